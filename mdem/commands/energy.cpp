@@ -17,8 +17,8 @@ Json vector_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Json as_json(const Forces& f, const NetForce& net) {
   const Energies& e = f.energy;
   Json out;
-  out["energy_eV"] = {{"stretch", e.stretch}, {"shear", e.shear}, {"bend", e.bend},
-                      {"twist", e.twist},     {"vdw", e.vdw},     {"total", e.potential()}};
+  out["energy_eV"] = {{"stretch", e.stretch}, {"shear", e.shear}, {"bend", e.bend},        {"twist", e.twist},
+                      {"vdw", e.vdw},         {"ends", e.terms},  {"total", e.potential()}};
   Json force = Json::array(), torque = Json::array();
   for (std::size_t i = 0; i < f.force.size(); ++i) {
     force.push_back(vector_json(f.force[i]));
@@ -35,8 +35,11 @@ void print_table(const Forces& f, const NetForce& net) {
   const Energies& e = f.energy;
   fmt::print(
       "stretch {:16.9g} eV\nshear   {:16.9g} eV\nbend    {:16.9g} eV\ntwist   {:16.9g} eV\n"
-      "vdW     {:16.9g} eV\ntotal   {:16.9g} eV\n\n",
-      e.stretch, e.shear, e.bend, e.twist, e.vdw, e.potential());
+      "vdW     {:16.9g} eV\n",
+      e.stretch, e.shear, e.bend, e.twist, e.vdw);
+  // Of tubes in line; no other force term acts here.
+  if (e.terms != 0) fmt::print("ends    {:16.9g} eV\n", e.terms);
+  fmt::print("total   {:16.9g} eV\n\n", e.potential());
   fmt::print("{:>8} {:>14} {:>14} {:>14}  {:>14} {:>14} {:>14}\n", "element", "Fx eV/nm", "Fy", "Fz", "Mx eV", "My",
              "Mz");
   for (std::size_t i = 0; i < f.force.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/counter_random.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
@@ -13,7 +14,6 @@
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
 #include "scene/wound.hpp"
-#include "model/counter_random.hpp"
 
 namespace ropewalk {
 namespace {
@@ -151,6 +151,7 @@ BuiltScene build(Scene& scene) {
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
   set_tube_types(scene, out.topology);
+  out.topology.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
   set_collapse(scene, out.topology);
   check_state(scene, out);
   if (scene.start.temperature > 0) set_thermal_velocities(out.topology, scene.start.temperature, random, out.state);

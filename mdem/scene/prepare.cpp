@@ -37,7 +37,7 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
 void refuse_overlaps(const Scene& scene, const Prepared& p) {
   if (!scene.from_file() || !p.interaction.has_contact()) return;
   const InputError::Place place{scene.source->file(), 0, ""};
-  std::string overlap;  // the first
+  std::string overlap, remedy;  // the first
   NeighbourList list(p.interaction, default_skin(p.interaction));
   list.build(p.topology, p.state);
   for (int i = 0; i < p.topology.elements(); ++i)
@@ -58,17 +58,24 @@ void refuse_overlaps(const Scene& scene, const Prepared& p) {
                         tube_i, tube_j, a, b, apart),
             "walls of multi-walled tubes are not supported, since contact is that between the outsides of tubes; "
             "keep one of the walls");
-      if (overlap.empty() && apart < ti.radius + tj.radius)
-        overlap = fmt::format(
-            "elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are {:.3g} nm together", a,
-            b, apart, ti.radius + tj.radius);
+      if (!overlap.empty() || apart >= ti.radius + tj.radius) return;
+      overlap = fmt::format(
+          "elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are {:.3g} nm together", a,
+          b, apart, ti.radius + tj.radius);
+      remedy = "move them apart, or relax the state first with mode = \"relax\"";
+      // The last element of a tube and the first one of the next, one behind the other.
+      if (tube_j == tube_i + 1 && j == i + 1 && d.dot(n_i) > half_i + half_j)
+        remedy += fmt::format(
+            "; if the ends of tubes {} and {} are to meet, say that they are one strand, below the header: \"# "
+            "strands_begin_with_tubes: 0\" with the first tube of each strand",
+            tube_i, tube_j);
     });
-  if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax)
-    throw InputError(place, overlap, "move them apart, or relax the state first with mode = \"relax\"");
+  if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax) throw InputError(place, overlap, remedy);
 }
 
-// The last elements of a tube are its upper end: the signs of torque and tension follow from that, and a clamp of the
-// upper ends of opposed tubes would hold both ends of the rope. Tubes that the program places itself stand upright.
+// The last elements of a tube are its upper end: the signs of torque and tension follow from that, and a clamp of
+// the upper ends of opposed tubes would hold both ends of the rope. Tubes that the program places itself stand
+// upright.
 void refuse_upside_down(const Scene& scene, const Prepared& p) {
   using Ends = Drive::Ends;
   if (!scene.from_file() || !(scene.has_ends(Ends::clamped) || scene.has_ends(Ends::loaded))) return;

@@ -5,6 +5,7 @@
 
 #include "model/self_contact.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "sim/forces/terms/tube_ends.hpp"
 
 namespace ropewalk {
 
@@ -36,7 +37,8 @@ int elements_held(const Scene& scene, int tube) {
 
 double free_length(const Scene& scene, const Topology& topology, int tube) {
   const double holes = topology.strand_begin.empty() ? topology.strand_holes : 0;
-  return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) * topology.type_of(tube).element_length +
+  return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) *
+             topology.type_of(tube).element_length +
          holes;
 }
 
@@ -89,6 +91,15 @@ std::shared_ptr<const ContactLaw> contact_law(const Scene& scene) {
   return kind ? kind->make(scene) : nullptr;
 }
 
+std::vector<EndContact> end_contacts(const Scene& scene) {
+  const ContactLawKind* kind = contact_law_kind(scene.contact.law);
+  return kind && kind->ends ? kind->ends(scene) : std::vector<EndContact>();
+}
+
+void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction) {
+  if (topology.ends_meet) add_term(tube_ends_term(end_contacts(scene), topology), interaction);
+}
+
 Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law) {
   Interaction in;
   in.law = std::move(law);
@@ -103,6 +114,7 @@ Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw>
 
 void add_terms(const Scene& scene, const Topology& topology, const State& start, Interaction& interaction) {
   for (const auto& drive : scene.drives) drive->add_terms(scene, topology, start, interaction);
+  add_end_contacts(scene, topology, interaction);
 }
 
 double protocol_time(const Scene& scene) {

@@ -1,6 +1,7 @@
 // The forces of a scene, resolved to elements: all that another engine needs besides the state.
 #pragma once
 
+#include "model/contact/tube_ends.hpp"
 #include "scene/scene.hpp"
 #include "sim/contact/contact_law.hpp"
 #include "sim/dynamics/loads.hpp"
@@ -8,14 +9,14 @@
 
 namespace ropewalk {
 
-// Whether a drive holds single elements (Drive::holds_elements). A scene with elements of another length then keeps their
-// centres, and the free length of a tube ends at the centres of its first and last elements.
+// Whether a drive holds single elements (Drive::holds_elements). A scene with elements of another length then keeps
+// their centres, and the free length of a tube ends at the centres of its first and last elements.
 bool holds_elements(const Scene& scene);
 // The number of elements of a tube less its free length in elements.
 int elements_held(const Scene& scene, int tube);
-// The free length of a tube (nm): the length that can stretch, bend and twist between its ends. If drives hold single
-// elements, it is the distance at the start between the centres of the innermost held elements at both ends; the first
-// and the last element count as held. Else it is the length of the tube.
+// The free length of a tube (nm): the length that can stretch, bend and twist between its ends. If drives hold
+// single elements, it is the distance at the start between the centres of the innermost held elements at both ends;
+// the first and the last element count as held. Else it is the length of the tube.
 double free_length(const Scene& scene, const Topology& topology, int tube);
 
 // The validity of each tube type, for its longest tube.
@@ -23,12 +24,15 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology);
 
 // The scene's tube types, and no tubes yet.
 Topology empty_topology(const Scene& scene);
-// Sets the bonds of all tube types by the free lengths of the tubes: a longer tube collapses at a smaller twist. The
-// tubes of a periodic slice count as endless.
+// Sets the bonds of all tube types by the free lengths of the tubes: a longer tube collapses at a smaller twist.
+// The tubes of a periodic slice count as endless.
 void set_collapse(const Scene& scene, Topology& topology);
 
 // The contact law of the scene; null: none. It takes searches for its wells: make it once and hand it on.
 std::shared_ptr<const ContactLaw> contact_law(const Scene& scene);
+
+// The contacts of the ends of two tubes in line (ContactLawKind::ends); none: the law is that of such ends too.
+std::vector<EndContact> end_contacts(const Scene& scene);
 
 // How far the scene's law reaches (nm), and what two parallel tubes bind with at most (eV/nm, positive); of each
 // pair of tube types.
@@ -45,7 +49,10 @@ double least_exclusion(const Scene& scene, const ContactLaw* law);
 Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law);
 inline Interaction interaction_of(const Scene& scene) { return interaction_of(scene, contact_law(scene)); }
 
-// Adds the force terms of the drives. Throws InputError for elements that do not exist.
+// Adds the contact of ends in line, where these meet (Topology::ends_meet).
+void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction);
+// Adds the force terms of the drives, and the contact of ends in line. Throws InputError for elements that do not
+// exist.
 void add_terms(const Scene& scene, const Topology& topology, const State& start, Interaction& interaction);
 
 // ps, from when on no drive changes anything.

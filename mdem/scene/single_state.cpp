@@ -99,7 +99,9 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
   EvaluatedState out{build(scene), Forces()};
-  out.forces = forces_of(out.built.topology, interaction_of(scene, out.built.law), out.built.state, s.reference);
+  Interaction interaction = interaction_of(scene, out.built.law);
+  add_end_contacts(scene, out.built.topology, interaction);
+  out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference);
   return out;
 }
 

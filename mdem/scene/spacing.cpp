@@ -45,6 +45,10 @@ double parallel_spacing(const Scene& scene, const ContactLaw* law) {
 }
 
 double coaxial_gap(const Scene& scene) {
+  if (const std::vector<EndContact> ends = end_contacts(scene); !ends.empty()) {
+    const auto rests_nearer = [](const EndContact& a, const EndContact& b) { return a.rest() < b.rest(); };
+    return std::max_element(ends.begin(), ends.end(), rests_nearer)->rest();
+  }
   const std::shared_ptr<const ContactLaw> law = contact_law(scene);
   double largest = graphite_gap;
   const auto types = static_cast<int>(scene.sets.size());

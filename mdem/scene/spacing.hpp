@@ -14,8 +14,8 @@ double largest_radius(const Scene& scene);  // nm, of the tube types
 // of their walls in graphite. Of several tube types, the largest.
 double parallel_spacing(const Scene& scene, const ContactLaw* law);
 double crossed_spacing(const Scene& scene);
-// The gap (nm) between the walls of two tubes in line at which their ends do not push each other. By the line law,
-// which knows axes and no ends, it is four times that of atoms, and the energy of the joint is near zero as theirs is.
+// The gap (nm) between the ends of two tubes in line at which these do not push each other; the largest of all
+// pairs of types. Of a law without a contact of ends, which knows axes alone, it is four times that of atoms.
 double coaxial_gap(const Scene& scene);
 
 }  // namespace ropewalk

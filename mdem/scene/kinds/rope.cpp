@@ -14,7 +14,7 @@ namespace ropewalk {
 namespace {
 
 constexpr int least_elements = 3;      // of a tube
-constexpr double hardest_push = 0.15;  // nm, of ends in line
+constexpr double hardest_push = 0.05;  // nm, of ends in line
 
 void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
@@ -86,7 +86,7 @@ SceneKind rope_kind() {
             &RopeSource::stagger, standard(),
             "ends of neighbouring tubes: \"none\" at one height, \"brick\" a third of a tube apart, \"random\""),
         Key::number("gap_nm", unit::nm, Bounds::positive(10), &RopeSource::gap,
-                    otherwise("1.5", "where the ends rest"),
+                    otherwise("0.25", "where the ends rest"),
                     "least hole between the walls of two tubes in line; holes grow until all strands have as many "
                     "elements")},
        check_rope});
@@ -161,23 +161,23 @@ void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Rand
     cuts_of.push_back(cuts(static_cast<int>(((i - j) % 3 + 3) % 3), a, least_gap, random));
     most = std::max(most, cuts_of.back().size());
   }
-  const int whole = whole_elements(length, a);
-  const int elements = whole - static_cast<int>(std::ceil(static_cast<double>(most) * least_gap / a - 1e-9));
+  const double holes = static_cast<double>(most) * least_gap;
+  const int elements = whole_elements(length - holes, a);
   topology.strand_begin = {0};
   std::vector<Vector3> positions;
   for (std::size_t s = 0; s < at.size(); ++s) {
     std::vector<int>& cut = cuts_of[s];
     while (!cut.empty() && cut.back() > elements - least_elements) cut.pop_back();
     cut.push_back(elements);
-    const double here = cut.size() > 1 ? (whole - elements) * a / static_cast<double>(cut.size() - 1) : 0;
-    double z = cut.size() > 1 ? -0.5 * (whole - 1) * a : -0.5 * (elements - 1) * a;
+    const double here = cut.size() > 1 ? holes / static_cast<double>(cut.size() - 1) : 0;
+    double z = -0.5 * ((elements - 1) * a + (cut.size() > 1 ? holes : 0));
     int from = 0;
     for (const int to : cut) {
       topology.add_tube(to - from);
       for (; from < to; ++from, z += a) positions.emplace_back(at[s].first, at[s].second, z);
       z += here;
     }
-    if (cut.size() > 1) topology.strand_holes = (whole - elements) * a;
+    if (cut.size() > 1) topology.strand_holes = holes;
     topology.strand_begin.push_back(topology.tubes());
   }
   state = State(positions.size());
@@ -189,7 +189,7 @@ std::string RopeSource::description(const Topology& t, const State&, double spac
     return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(),
                        spacing_of_tubes);
   return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm, of {} tubes of {:.4g} nm in the mean, in {} strands",
-                     whole_elements(length, t.longest_element()) * t.longest_element(), spacing_of_tubes, t.tubes(),
+                     t.elements() / t.strands() * t.longest_element() + t.strand_holes, spacing_of_tubes, t.tubes(),
                      t.elements() * t.longest_element() / t.tubes(), t.strands());
 }
 

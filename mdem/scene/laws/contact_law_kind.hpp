@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/toml_table.hpp"
+#include "model/contact/tube_ends.hpp"
 #include "model/parameters.hpp"
 #include "sim/contact/contact_law.hpp"
 
@@ -24,6 +25,9 @@ struct ContactLawKind {
   bool (*in_set)(const ParameterSet&) = nullptr;
   bool mixes_types = true;         // holds between tubes of different parameter sets
   bool any_element_length = true;  // false: holds for the length of the parameter set alone
+  // The contacts of the ends of two tubes in line, of the types i, j at i * types + j; null: the law is that of
+  // such ends too.
+  std::function<std::vector<EndContact>(const Scene&)> ends = nullptr;
   // Throws InputError for parameter sets that do not go together; null: all do.
   void (*check)(const TomlTable& top, const Scene&) = nullptr;
 };

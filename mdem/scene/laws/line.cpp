@@ -75,6 +75,19 @@ std::shared_ptr<const ContactLaw> line_law_of(const Scene& scene) {
   return std::make_shared<const LineLaw>(std::move(pairs.contacts), std::move(pairs.wells));
 }
 
+std::vector<EndContact> contacts_of_ends(const Scene& scene) {
+  std::vector<EndContact> out;
+  const auto end_of = [](const ParameterSet& set) {
+    return tube_end(set.chirality, set.radius, set.atoms_per_length);
+  };
+  for (const ParameterSet& i : scene.sets)
+    for (const ParameterSet& j : scene.sets) {
+      const UniversalLine& atoms = i.line->universal;
+      out.emplace_back(LennardJones{atoms.epsilon, atoms.sigma, atoms.lj_cutoff}, end_of(i), end_of(j));
+    }
+  return out;
+}
+
 }  // namespace
 
 std::vector<LineContact> line_contacts(const Scene& scene) { return line_pairs(scene).contacts; }
@@ -84,6 +97,7 @@ ContactLawKind line_kind() {
   kind.name = "line";
   kind.make = line_law_of;
   kind.in_set = [](const ParameterSet& set) { return set.line.has_value(); };
+  kind.ends = contacts_of_ends;
   kind.check = check_mixture;
   return kind;
 }

@@ -73,6 +73,8 @@ std::vector<TermKind> shipped_term_kinds() {
   std::vector<TermKind> kinds;
   for (const DriveKind& drive : shipped_drives())
     if (auto kind = term_kind_of(drive)) kinds.push_back(*std::move(kind));
+  // It follows from the strands of a scene and is in no table.
+  kinds.push_back({"ends", "van der Waals energy of the ends of tubes in line"});
   return kinds;
 }
 

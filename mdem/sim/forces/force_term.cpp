@@ -7,8 +7,9 @@
 
 namespace ropewalk {
 
-// Those of the shipped drives (scene/loads/drive_kind.cpp). They are called for by name: the linker would leave a file
-// that registers itself out of each program that needs nothing else from it, and the log would lose its columns there.
+// Those of the shipped drives (scene/loads/drive_kind.cpp). They are called for by name: the linker would leave a
+// file that registers itself out of each program that needs nothing else from it, and the log would lose its
+// columns there.
 std::vector<TermKind> shipped_term_kinds();
 
 namespace {
@@ -38,7 +39,8 @@ void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction) {
   interaction.terms.push_back(std::move(term));
 }
 
-std::map<std::string, TermReading> term_readings(const Interaction& interaction, const std::vector<double>& energies,
+std::map<std::string, TermReading> term_readings(const Interaction& interaction,
+                                                 const std::vector<double>& energies,
                                                  const std::vector<TermAccount>& accounts) {
   ROPEWALK_EXPECTS(energies.size() == interaction.terms.size() && accounts.size() == energies.size());
   std::map<std::string, TermReading> all;
@@ -53,8 +55,7 @@ std::map<std::string, TermReading> term_readings(const Interaction& interaction,
 void for_all_pairs(const Topology& topology, const Interaction& in, const std::function<void(int, int)>& work) {
   for (int i = 0; i < topology.elements(); ++i) {
     const int tube = topology.tube_of(i), excluded = topology.type_of(tube).elements_within(in.excluded_arc());
-    for (int j = i + 1; j < topology.elements(); ++j)
-      if (j >= topology.tube_begin[tube + 1] || j - i > excluded) work(i, j);
+    for (int j = topology.last_within(excluded, i, tube) + 1; j < topology.elements(); ++j) work(i, j);
   }
 }
 

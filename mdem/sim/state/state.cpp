@@ -61,7 +61,13 @@ int Topology::change_of_owner(int begin, int end) const {
 int Topology::last_within(int elements, int element, int tube) const {
   ROPEWALK_EXPECTS(elements >= 0 && tube_of(element) == tube);
   const auto t = static_cast<std::size_t>(tube);
-  if (!part) return std::min(element + elements, tube_begin[t + 1] - 1);
+  if (!part) {
+    std::size_t last_tube = t;
+    const int last = element + elements;
+    while (ends_meet && tube_begin[last_tube + 1] <= last && !ends_strand(static_cast<int>(last_tube))) ++last_tube;
+    return std::min(last, tube_begin[last_tube + 1] - 1);
+  }
+  ROPEWALK_EXPECTS(!ends_meet);
   // Other pieces of the tube may follow.
   const auto number = [&](int i) { return part->number[static_cast<std::size_t>(i)]; };
   const int limit = std::min(number(element) + elements, part->tube_end[t] - 1);

@@ -120,10 +120,13 @@ struct Topology {
   std::vector<int> tube_begin{0};
   std::vector<int> tube_type;  // of each tube, an index of `types`
   std::vector<TubeType> types = std::vector<TubeType>(1);
-  // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of each
-  // strand, and the number of tubes. Empty: each tube is a strand.
+  // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of
+  // each strand, and the number of tubes. Empty: each tube is a strand.
   std::vector<int> strand_begin;
   double strand_holes = 0;  // nm, between the tubes of a strand at the start: their sum, of the strand with most
+  // Ends of tubes that follow one another in a strand have a contact of their own (forces/terms/tube_ends.hpp):
+  // near them elements of both tubes do not touch each other otherwise, like those of one tube.
+  bool ends_meet = false;
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
@@ -156,7 +159,8 @@ struct Topology {
   }
   // From `begin` on, the first element that is owned where that one is not, or the other way round; `end` at most.
   int change_of_owner(int begin, int end) const;
-  // The last element of the same tube that is at most `elements` elements behind this one of `tube`.
+  // The last element that is at most `elements` elements behind this one of `tube` and belongs to the same tube,
+  // or, where ends meet, to the same strand.
   int last_within(int elements, int element, int tube) const;
   // The least elements_within() of all types.
   int fewest_within(double arc) const;

@@ -34,7 +34,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "nm,"
       "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_tex,"
       "tether_eV,tether_lost_eV,tethers_broken,friction_eV,friction_slip_eV,friction_drag_eV,friction_slips,"
-      "links_eV,links_lost_eV,links_formed,links_broken,failure_lost_eV,bonds_broken\n");
+      "links_eV,links_lost_eV,links_formed,links_broken,failure_lost_eV,bonds_broken,ends_eV\n");
   const Topology topology;
   State state;
   state.step = 123456789012345;
@@ -85,7 +85,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
             "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.5,0.125,0.25,5.5,1,1,1.5,"
             "2,1,66,"
             "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-1,2,210,3,"
-            "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
+            "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST(Observables, NamesAreUniqueAndEndInTheirUnit) {

@@ -1,0 +1,108 @@
+#include "sim/forces/terms/tube_ends.hpp"
+
+#include <algorithm>
+
+#include "model/contract.hpp"
+
+namespace ropewalk {
+namespace {
+
+// Two ends that meet: elements of the scene, and their contact.
+struct Joint {
+  int below = 0, above = 0;
+  double half_below = 0, half_above = 0;  // nm, of the elements
+  std::size_t contact = 0;
+};
+
+struct JointForce {
+  double energy = 0;
+  Vector3 force_above = Vector3::Zero();  // minus that below
+  Vector3 torque_below = Vector3::Zero(), torque_above = Vector3::Zero();
+};
+
+class TubeEnds : public ForceTerm {
+ public:
+  TubeEnds(std::vector<EndContact> contacts, const Topology& scene) : contacts_(std::move(contacts)) {
+    ROPEWALK_EXPECTS(contacts_.size() == scene.types.size() * scene.types.size() && !scene.part);
+    for (int t = 0; t + 1 < scene.tubes(); ++t) {
+      if (scene.ends_strand(t)) continue;
+      const auto type_below = static_cast<std::size_t>(scene.tube_type[static_cast<std::size_t>(t)]),
+                 type_above = static_cast<std::size_t>(scene.tube_type[static_cast<std::size_t>(t) + 1]);
+      const int behind = scene.tube_begin[static_cast<std::size_t>(t) + 1];
+      joints_.push_back({behind - 1, behind, 0.5 * scene.types[type_below].element_length,
+                         0.5 * scene.types[type_above].element_length,
+                         type_below * scene.types.size() + type_above});
+    }
+  }
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeEnds>(*this); }
+  std::string name() const override { return "ends"; }
+
+  // Its energy belongs to the element below.
+  TermSum add(const State& state, const Segment& part, const ForceRows& out) const override {
+    TermSum sum;
+    const auto within = [&](int i) { return part.begin <= i && i < part.end; };
+    const auto row = [&](int i) { return static_cast<std::size_t>(i - out.origin); };
+    // Joints rise with their elements; that of the element before the part has its first one above.
+    auto joint = std::lower_bound(joints_.begin(), joints_.end(), static_cast<int>(part.begin),
+                                  [](const Joint& j, int i) { return j.above < i; });
+    for (; joint != joints_.end() && joint->below < part.end; ++joint) {
+      const JointForce f = force_of(*joint, state);
+      if (within(joint->below)) {
+        out.force.add(row(joint->below), -f.force_above);
+        out.torque.add(row(joint->below), f.torque_below);
+        sum.energy += f.energy;
+      }
+      if (within(joint->above)) {
+        out.force.add(row(joint->above), f.force_above);
+        out.torque.add(row(joint->above), f.torque_above);
+      }
+    }
+    return sum;
+  }
+
+  // Two elements that swing against each other along their line.
+  double stiffness() const override {
+    double most = 0;
+    for (const EndContact& c : contacts_) most = std::max(most, c.stiffness());
+    return joints_.empty() ? 0 : 2 * most;
+  }
+
+  std::size_t bytes() const override { return joints_.size() * sizeof(Joint); }
+
+ private:
+  JointForce force_of(const Joint& joint, const State& state) const {
+    const EndContact& contact = contacts_[joint.contact];
+    const auto i = static_cast<std::size_t>(joint.below), j = static_cast<std::size_t>(joint.above);
+    const Vector3 t_i = axis_of(state.orientation[i]), t_j = axis_of(state.orientation[j]);
+    const Vector3 arm_i = joint.half_below * t_i, arm_j = -joint.half_above * t_j;
+    const Vector3 d = state.position[j] + arm_j - state.position[i] - arm_i, both = t_i + t_j;
+    const double length = both.norm();
+    JointForce out;
+    if (!(length > 0.1)) return out;  // they point against each other
+    const Vector3 n = both / length;
+    const double s = d.dot(n), width2 = contact.width() * contact.width();
+    const Vector3 across = d - s * n;
+    const double q = across.squaredNorm() / width2;
+    if (q >= 1 || s >= contact.reach()) return out;
+    const RadialTerms v = contact.terms(s);
+    const double w = (1 - q) * (1 - q) * (1 - q), dw = -3 * (1 - q) * (1 - q);
+    out.energy = v.energy * w;
+    const Vector3 by_d = v.derivative * w * n + 2 * v.energy * dw / width2 * across;
+    const Vector3 by_axis = (v.derivative * w - 2 * s * v.energy * dw / width2) / length * across;
+    out.force_above = -by_d;
+    out.torque_below = arm_i.cross(by_d) - t_i.cross(by_axis);
+    out.torque_above = -arm_j.cross(by_d) - t_j.cross(by_axis);
+    return out;
+  }
+
+  std::vector<EndContact> contacts_;
+  std::vector<Joint> joints_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ForceTerm> tube_ends_term(std::vector<EndContact> contacts, const Topology& scene) {
+  return std::make_shared<const TubeEnds>(std::move(contacts), scene);
+}
+
+}  // namespace ropewalk
