@@ -16,7 +16,7 @@ cp runs/fig5/trials.csv fig5-trials.csv
 cp runs/fig5/thresholds.html fig5.html
 viscous=contact_viscosity_eV_ps_per_nm2
 curves=twist_eV+bend_eV+vdw_eV,Q
-"$program" picture runs/fig2/points/moment_nN_nm-35_$viscous-20 --at 20,35,70,185 --sections --curves $curves \
+"$program" picture runs/fig2/points/moment_nN_nm-64_$viscous-8 --at 32,64,100,214 --sections --curves $curves \
   -o fig2.svg --force
 "$program" picture runs/fig3/points/moment_nN_nm-64_$viscous-8 --at 32,64,100,364 --sections --curves $curves \
   -o fig3.svg --force
