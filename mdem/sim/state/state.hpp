@@ -124,12 +124,17 @@ struct Topology {
   // strand, and the number of tubes. Empty: each tube is a strand.
   std::vector<int> strand_begin;
   double strand_holes = 0;  // nm, between the tubes of a strand at the start: their sum, of the strand with most
+  // Ropes that are plied: the first strand of each, and the number of strands. Empty: all are one rope.
+  std::vector<int> rope_begin;
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
   int strands() const { return strand_begin.empty() ? tubes() : static_cast<int>(strand_begin.size()) - 1; }
+  int ropes() const { return rope_begin.empty() ? 1 : static_cast<int>(rope_begin.size()) - 1; }
+  // The strands of a rope: the first, and the one behind the last.
+  std::pair<int, int> strands_of_rope(int rope) const;
   // Whether the first end of a tube, or its last one, is that of its strand.
   bool begins_strand(int tube) const;
   bool ends_strand(int tube) const;

@@ -28,7 +28,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "work_lower_eV,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,damping_eV,thermostat_eV,"
       "balance_eV,stored_MJ_per_kg,stored_stretch_MJ_per_kg,stored_bend_MJ_per_kg,stored_twist_MJ_per_kg,"
       "stored_contact_MJ_per_kg,cohesion_lost,ends_apart_nm,ends_strain,least_tension_nN,most_tension_nN,"
-      "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_"
+      "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,ply_angle_deg,Q,Q_"
       "delaunay,"
       "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,middle_amplitude_"
       "nm,"
@@ -64,6 +64,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.beta = 0.5;
   o.physical_twist = 1.25;
   o.geometric_twist = -2.5;
+  o.ply_angle = -0.125;
   o.middle.charge = -1;
   o.middle.charge_delaunay = 2;
   o.middle.contacts = 210;
@@ -84,7 +85,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   EXPECT_EQ(log_line(LogRow({topology, state, o, l, 2, a})),
             "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.5,0.125,0.25,5.5,1,1,1.5,"
             "2,1,66,"
-            "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-1,2,210,3,"
+            "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-7.161972439135291,-1,2,210,3,"
             "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
 }
 
