@@ -41,7 +41,7 @@ struct MomentRamp {
   }
   double hand() const { return left_handed ? -1 : 1; }
   // eV, on the upper end; right-handed: positive.
-  double upper_moment_at(double time) const { return hand() * moment_at(time); }
+  double upper_moment_at(double time) const { return left_handed ? 0 - moment_at(time) : moment_at(time); }
   double of_each(int tubes) const { return reading == Reading::per_tube ? moment : moment / tubes; }  // eV
 };
 

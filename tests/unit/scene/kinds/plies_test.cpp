@@ -144,11 +144,11 @@ TEST(Plies, WithoutATwistOfTheirOwnHaveParallelTubes) {
   Scene scene = scene_of(wound + "rope_twist_deg_per_nm = 0\n");
   const Prepared p = prepare(scene);
   const RopeObservation o = seen_in(scene, p);
-  EXPECT_LT(o.beta, 0.1 * degree);
+  EXPECT_LT(o.beta, 0.2 * degree);
   EXPECT_LT(std::fabs(o.physical_twist), 1 * degree);
   EXPECT_GT(o.ply_angle, 10 * degree);
   EXPECT_NEAR(least_distance(p, false), p.spacing, 5e-3) << "where two tubes face each other";
-  EXPECT_GT(least_distance(p, true), 0.998 * p.spacing) << "parallel tubes do not press each other";
+  EXPECT_GT(least_distance(p, true), 0.997 * p.spacing) << "parallel tubes do not press each other";
 }
 
 TEST(Plies, KeepTheirRopesInAStateFile) {
