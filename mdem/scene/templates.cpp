@@ -128,7 +128,7 @@ std::vector<Recipe> recipes() {
         {"twist",
          {{"moment_nN_nm", "14"},
           {"rate_nN_nm_per_ps", "0.05"},
-          {"hold_ps", "1300"},
+          {"hold_ps", "900"},
           {"unload_rate_nN_nm_per_ps", "0.03"},
           {"unloaded_ps", "2500"}}}}},
       {"interior",

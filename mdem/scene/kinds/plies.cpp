@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "observe/centre_line.hpp"
 #include "scene/bounds.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene.hpp"
@@ -308,8 +307,11 @@ void PliesSource::place(const Scene& scene, double spacing_of_tubes, Random&, To
 }
 
 std::string PliesSource::description(const Topology& t, const State& s, double spacing_of_tubes) const {
-  const std::vector<Vector3> line = rope_lines(t, s).front().points;
-  const double radius = line[line.size() / 2].head<2>().norm(), degree = units::degree;
+  const double degree = units::degree;
+  Vector3 centre = Vector3::Zero();  // of the middle of the first rope
+  for (int tube = 0; tube < rope.tubes; ++tube)
+    centre += s.position[static_cast<std::size_t>(t.tube_begin[tube] + t.length_of(tube) / 2)] / rope.tubes;
+  const double radius = centre.head<2>().norm();
   const std::string wound = winding == 0 ? std::string()
                                          : fmt::format(", wound by {:.4g} deg/nm at {:.3g} degrees to the axis",
                                                        winding / degree, std::atan(radius * winding) / degree);
