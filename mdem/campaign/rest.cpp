@@ -24,7 +24,8 @@ std::string rest_sweep(const Scene& scene, const Prepared& p, const RestTheory& 
   double rim = 0;
   for (std::size_t i = 0; i < p.state.size(); ++i)
     rim = std::max(rim, std::hypot(p.state.position.x[i], p.state.position.y[i]));
-  const double most = std::min(above * theory.compact, std::tan(steepest) / rim);
+  const double most =
+      std::copysign(std::min(above * std::fabs(theory.compact), std::tan(steepest) / rim), theory.compact);
   std::string text =
       fmt::format("format = \"ropewalk-sweep-1\"\nscene = {}\n[vary]\nstart.twist_deg_per_nm = [{:.4g}, {:.4g}]\n",
                   nlohmann::json(scene.path).dump(), below * most / above / units::degree, most / units::degree);
@@ -83,7 +84,7 @@ RestVerdict rest_verdict(const std::array<RestSide, 2>& s, double tolerance) {
   const auto motion = [&](const RestSide& side) {
     if (std::fabs(side.drift) * 0.2 * side.time < 0.5 * side.moved)
       return fmt::format("swings by {:.2g}", side.moved);
-    return fmt::format("{} by {:.2g}", side.drift < 0 ? "fell" : "rose", side.moved);
+    return fmt::format("{} by {:.2g}", side.drift * side.twist < 0 ? "fell" : "rose", side.moved);
   };
   if (!both_still)
     out.words = fmt::format(

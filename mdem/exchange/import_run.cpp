@@ -86,7 +86,7 @@ class Import {
   void add(const State& state, const LammpsRow& from) {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
-    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->moment_at(from.time);
+    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->upper_moment_at(from.time);
     account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
                          std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
     account.terms = term_readings(prepared_.interaction, from.terms, from.accounts);

@@ -104,19 +104,37 @@ Vector3 tube_tangent(const Topology& topology, const State& state, int tube, int
   return unit_or_z(state.position[first + after] - state.position[first + before]);
 }
 
-CentreLine centre_line(const Topology& topology, const State& state) {
-  const int n = common_length(topology), tubes = topology.tubes();
+namespace {
+
+// Of the tubes from `from` up to that before `behind`.
+CentreLine line_of(const Topology& topology, const State& state, int from, int behind) {
+  const int n = common_length(topology), tubes = behind - from;
   CentreLine line;
   line.points.assign(n, Vector3::Zero());
-  for (int t = 0; t < tubes && n > 0; ++t)
+  for (int t = from; t < behind && n > 0; ++t)
     for (int k = 0; k < n; ++k) line.points[k] += state.position[topology.tube_begin[t] + k] / tubes;
   line.tangents = differences(line.points);
   if (n == 1) {
     Vector3 sum = Vector3::Zero();
-    for (int t = 0; t < tubes; ++t) sum += tube_tangent(topology, state, t, 0);
+    for (int t = from; t < behind; ++t) sum += tube_tangent(topology, state, t, 0);
     line.tangents[0] = unit_or_z(sum);
   }
   return line;
+}
+
+}  // namespace
+
+CentreLine centre_line(const Topology& topology, const State& state) {
+  return line_of(topology, state, 0, topology.tubes());
+}
+
+std::vector<CentreLine> rope_lines(const Topology& topology, const State& state) {
+  std::vector<CentreLine> lines;
+  for (int rope = 0; rope < topology.ropes(); ++rope) {
+    const auto [from, behind] = topology.strands_of_rope(rope);
+    lines.push_back(line_of(topology, state, from, behind));
+  }
+  return lines;
 }
 
 double arc_length(const std::vector<Vector3>& line) {

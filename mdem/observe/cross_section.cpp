@@ -34,12 +34,16 @@ double tube_distance(const Topology& topology, const State& state, int a, int b,
   return std::sqrt(smallest);
 }
 
-// Distances of all pairs a < b of tubes, row by row.
+// Distances of all pairs a < b of tubes, row by row; infinite between plied ropes.
 std::vector<double> tube_distances(const Topology& topology, const State& state, int section) {
   std::vector<double> distances;
-  for (int a = 0; a < topology.tubes(); ++a)
-    for (int b = a + 1; b < topology.tubes(); ++b)
-      distances.push_back(tube_distance(topology, state, a, b, section));
+  for (int rope = 0; rope < topology.ropes(); ++rope) {
+    const auto [from, behind] = topology.strands_of_rope(rope);
+    for (int a = from; a < behind; ++a)
+      for (int b = a + 1; b < topology.tubes(); ++b)
+        distances.push_back(b < behind ? tube_distance(topology, state, a, b, section)
+                                       : std::numeric_limits<double>::infinity());
+  }
   return distances;
 }
 
@@ -158,7 +162,14 @@ CrossSection cross_section(const Topology& of, const State& state, const RopeShe
     tangents.push_back(plane.local(along(tube_tangent(topology, state, t, section), plane.normal)));
     out.points.push_back(points.back().head<2>());
   }
-  const std::vector<Triangle> triangles = delaunay(out.points);
+  std::vector<Triangle> triangles;  // of each rope
+  for (int rope = 0; rope < topology.ropes(); ++rope) {
+    const auto [from, behind] = topology.strands_of_rope(rope);
+    for (Triangle t : delaunay({out.points.begin() + from, out.points.begin() + behind})) {
+      for (int& corner : t) corner += from;
+      triangles.push_back(t);
+    }
+  }
   out.delaunay = edge_counts(triangles, tubes);
   if (!triangles.empty()) out.charge_delaunay = packing_charge(shells, out.delaunay);
   const Voids voids = find_voids(triangles, points, tangents, spacing);

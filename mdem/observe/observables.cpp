@@ -49,7 +49,8 @@ std::vector<Observable>& table() {
 
       {"time_step_fs", "fs", "time step, a part of the whole one where the motion is fast", Group::load,
        [](const M& m) { return m.account.time_step / units::fs; }},
-      {"moment_nN_nm", "nN nm", "moment of the twist protocol: per tube or in total, as the scene gives it",
+      {"moment_nN_nm", "nN nm",
+       "moment of the twist protocol: per tube or in total, as the scene gives it; left-handed: negative",
        Group::load, [](const M& m) { return m.account.moment / units::nN_nm; }},
 
       {"torque_upper_nN_nm", "nN nm",
@@ -135,12 +136,16 @@ std::vector<Observable>& table() {
           [](const M& m) { return m.loading.core_pressure / units::nN_nm; }  // 1 GPa is 1 nN/nm^2
       },
 
-      {"beta_deg", "deg", "mean angle of the outermost tubes to the rope axis, over the middle third", Group::twist,
-       [](const M& m) { return m.rope.beta / degree; }},
+      {"beta_deg", "deg", "mean angle of the outermost tubes to the axis of their rope, over the middle third",
+       Group::twist, [](const M& m) { return m.rope.beta / degree; }},
       {"physical_twist_deg", "deg", "twist of the bonds of a tube, end to end, mean over the tubes", Group::twist,
        [](const M& m) { return m.rope.physical_twist / degree; }},
       {"geometric_twist_deg", "deg", "rotation of the tubes about the centre line of the rope, end to end",
        Group::twist, [](const M& m) { return m.rope.geometric_twist / degree; }},
+      {"ply_angle_deg", "deg",
+       "angle at which plied ropes wind round the axis of them all, middle third; right-handed: positive; nan: one "
+       "rope",
+       Group::twist, [](const M& m) { return m.rope.ply_angle / degree; }},
 
       {"Q", "", "packing charge of the middle section, neighbours by distance", Group::packing,
        [](const M& m) { return in_section(m, m.rope.middle.charge); }, whole},
@@ -193,8 +198,8 @@ std::vector<Observable>& table() {
       return at == m.account.terms.end() ? TermReading() : at->second;
     };
     if (!kind.energy.empty())
-      entries.push_back(
-          {kind.name + "_eV", "eV", kind.energy, Group::energy, [reading](const M& m) { return reading(m).energy; }});
+      entries.push_back({kind.name + "_eV", "eV", kind.energy, Group::energy,
+                         [reading](const M& m) { return reading(m).energy; }});
     for (const TermColumn& c : kind.account)
       entries.push_back({c.name, c.unit, c.meaning, Group::energy,
                          [reading, value = c.value](const M& m) { return reading(m).account.*value; },

@@ -47,16 +47,20 @@ void observe_bonds(const Topology& topology, const State& state, const std::vect
   if (topology.tubes() > 0) out.physical_twist = sum / topology.strands();
 }
 
-// Mean angle of the outermost tubes to the local axis in the middle third.
-double twist_angle(const Topology& topology, const State& state, const RopeShells& shells, const CentreLine& line) {
-  const int n = static_cast<int>(line.points.size());
-  const int tubes = std::min(topology.tubes(), static_cast<int>(shells.outermost.size()));
+// Mean angle of the outermost tubes to the local axis of their rope in the middle third.
+double twist_angle(const Topology& topology, const State& state, const RopeShells& shells,
+                   const std::vector<CentreLine>& lines) {
   double sum = 0.0;
   int count = 0;
-  for (int t = 0; t < tubes; ++t) {
-    if (!shells.outermost[t]) continue;
-    for (int k = n / 3; k < n - n / 3; ++k, ++count)
-      sum += angle_between(tube_tangent(topology, state, t, k), line.tangents[k]);
+  for (int rope = 0; rope < topology.ropes(); ++rope) {
+    const CentreLine& line = lines[static_cast<std::size_t>(rope)];
+    const int n = static_cast<int>(line.points.size());
+    const auto [from, behind] = topology.strands_of_rope(rope);
+    for (int t = from; t < std::min(behind, static_cast<int>(shells.outermost.size())); ++t) {
+      if (!shells.outermost[t]) continue;
+      for (int k = n / 3; k < n - n / 3; ++k, ++count)
+        sum += angle_between(tube_tangent(topology, state, t, k), line.tangents[k]);
+    }
   }
   return count > 0 ? sum / count : 0.0;
 }
@@ -68,6 +72,25 @@ std::vector<Quaternion> transports(const CentreLine& line) {
   for (std::size_t k = 0; k + 1 < line.tangents.size(); ++k)
     steps.push_back(Quaternion::FromTwoVectors(line.tangents[k], line.tangents[k + 1]));
   return steps;
+}
+
+// The angle of a helix is that of its turn times its radius to its advance along the axis. Mean over the ropes and
+// the middle third; weighted with the advance, so that no single short step counts.
+double ply_angle(const std::vector<CentreLine>& ropes, const CentreLine& whole,
+                 const std::vector<Quaternion>& steps) {
+  if (ropes.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t n = whole.points.size(), from = n / 3, to = n - n / 3;
+  double round = 0, along = 0;
+  for (const CentreLine& rope : ropes)
+    for (std::size_t k = from; k + 1 < to; ++k) {
+      const Vector3 here = normal_part(rope.points[k] - whole.points[k], whole.tangents[k]),
+                    next = normal_part(rope.points[k + 1] - whole.points[k + 1], whole.tangents[k + 1]),
+                    carried = steps[k] * here;
+      const double turn = std::atan2(whole.tangents[k + 1].dot(carried.cross(next)), carried.dot(next));
+      round += 0.5 * (here.norm() + next.norm()) * turn;
+      along += (whole.points[k + 1] - whole.points[k]).norm();
+    }
+  return along > 0 ? std::atan2(round, along) : std::numeric_limits<double>::quiet_NaN();
 }
 
 struct Turning {
@@ -90,8 +113,8 @@ Turning turning_of(const Topology& topology, const State& state, const CentreLin
   return turning;
 }
 
-double geometric_twist(const Topology& topology, const State& state, const CentreLine& line, double scale) {
-  const std::vector<Quaternion> steps = transports(line);
+double geometric_twist(const Topology& topology, const State& state, const CentreLine& line,
+                       const std::vector<Quaternion>& steps, double scale) {
   double sum = 0.0;
   int count = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
@@ -125,17 +148,20 @@ RopeObservation observe(const Topology& tubes, const State& state, const RopeShe
   const Topology topology = strands_of(tubes);
   const int n = common_length(topology);
   if (topology.tubes() > 0 && (n == 0 || !run_the_same_way(topology, state))) {
-    for (double* none :
-         {&out.beta, &out.geometric_twist, &out.radius_mid, &out.radius_end, &out.length, &out.amplitude,
-          &out.middle_amplitude, &out.writhe, &out.turned_back, &out.windings, &out.middle.void_area})
+    for (double* none : {&out.beta, &out.geometric_twist, &out.ply_angle, &out.radius_mid, &out.radius_end,
+                         &out.length, &out.amplitude, &out.middle_amplitude, &out.writhe, &out.turned_back,
+                         &out.windings, &out.middle.void_area})
       *none = std::numeric_limits<double>::quiet_NaN();
     return out;
   }
   if (n == 0) return out;
   const double scale = spacing > 0.0 ? spacing : 2.0 * topology.largest_radius();  // a lone tube has no spacing
   const CentreLine line = centre_line(topology, state);
-  out.beta = twist_angle(topology, state, shells, line);
-  out.geometric_twist = geometric_twist(topology, state, line, scale);
+  const std::vector<CentreLine> ropes = rope_lines(topology, state);
+  const std::vector<Quaternion> steps = transports(line);
+  out.beta = twist_angle(topology, state, shells, ropes);
+  out.geometric_twist = geometric_twist(topology, state, line, steps, scale);
+  out.ply_angle = ply_angle(ropes, line, steps);
   out.radius_profile = outer_radii(topology, state, line);
   out.radius_mid = out.radius_profile[n / 2];
   out.radius_end = 0.5 * (out.radius_profile.front() + out.radius_profile.back());

@@ -1,10 +1,13 @@
 // Geometry of a twisted rope. Everything is computed from Topology and State alone, so that `observe` on stored
 // frames gives the numbers that the run logged.
 //
-// Centre line C(s): mean position of the elements of equal index s over all strands. A strand is a tube, or a row of
-// tubes in line (Topology::strand_begin); sections follow the material. Strands of unequal numbers of elements have no
-// centre line: only the quantities of single tubes are then given, physical twist and the counts of bonds. Its tangent
-// is the local rope axis. Twists and windings are positive where they are right-handed.
+// Centre line C(s): mean position of the elements of equal index s over all strands. A strand is a tube, or a row
+// of tubes in line (Topology::strand_begin); sections follow the material. Strands of unequal numbers of elements
+// have no centre line: only the quantities of single tubes are then given, physical twist and the counts of bonds.
+// Its tangent is the local rope axis. Twists and windings are positive where they are right-handed.
+//
+// Ropes that are plied (Topology::rope_begin) have a centre line each, and C is the axis of them all. Twist angle
+// beta, neighbours, Q and voids are those of each rope by itself: as if it stood alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +19,9 @@
 namespace ropewalk {
 
 // A bond so long has broken: no tube bears such a strain. Stored frames do not tell otherwise.
-inline bool has_parted(const TubeType& type, const Vector3& bond) { return bond.norm() > 1.5 * type.element_length; }
+inline bool has_parted(const TubeType& type, const Vector3& bond) {
+  return bond.norm() > 1.5 * type.element_length;
+}
 
 // The internal and the outermost strands, from the untwisted state.
 struct RopeShells {
@@ -40,6 +45,7 @@ struct RopeObservation {
   double physical_twist = 0;    // rad: sum of bond twist angles along a tube, mean over tubes
   double geometric_twist = 0;   // rad: rotation of the tubes about the centre line, end to end, mean over the
                                 // tubes that stay away from it; the writhe of a bent rope does not enter
+  double ply_angle = 0;         // rad: of the centre lines of plied ropes to C, right-handed positive, middle third
   double radius_mid = 0;        // nm: outer radius (largest axis distance + r) of the middle section
   double radius_end = 0;        // nm: mean of the two end sections
   double length = 0;            // nm: arc length of the centre line

@@ -23,12 +23,17 @@ void bond_features(const Topology& topology, const State& s, SceneFeatures& f) {
 
 // Distance of the farthest tube from the line through the mean of all, at the start.
 double rope_radius(const Prepared& p) {
+  // At the lower end: the middle of a rope that begins bent aside is not its axis.
+  const auto end_of = [&](int tube) -> Vector3 {
+    return p.state.position[static_cast<std::size_t>(p.topology.tube_begin[tube])];
+  };
   Vector3 mean = Vector3::Zero();
-  for (std::size_t i = 0; i < p.state.size(); ++i)
-    mean += p.state.position[i] / static_cast<double>(p.state.size());
+  int strands = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t)
+    if (p.topology.begins_strand(t)) mean += end_of(t), ++strands;
   double largest = 0;
-  for (std::size_t i = 0; i < p.state.size(); ++i)
-    largest = std::max(largest, (Vector3(p.state.position[i]) - mean).head<2>().norm());
+  for (int t = 0; t < p.topology.tubes(); ++t)
+    if (p.topology.begins_strand(t)) largest = std::max(largest, (end_of(t) - mean / strands).head<2>().norm());
   return largest;
 }
 
@@ -78,8 +83,9 @@ void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   f.ramp = std::max(f.ramp, load.ramp);
 }
 
-// Adds the demands of clamps: pulling, bending, stretching where the rope is turned at a length that is held, and the
-// bending of tilted tubes where a clamp keeps them straight, over the length sqrt(EI/T), T the tension of a tube.
+// Adds the demands of clamps: pulling, bending, stretching where the rope is turned at a length that is held, and
+// the bending of tilted tubes where a clamp keeps them straight, over the length sqrt(EI/T), T the tension of a
+// tube.
 void add_clamps(const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
   EndElements clamped;
@@ -103,7 +109,10 @@ void add_clamps(const Prepared& p, SceneFeatures& f) {
   }
   f.between_clamps = between;
   f.length_held = held;
-  f.strain += pulled / f.length + tension / k.stretch;
+  // Ends that come nearer bend the rope aside, by Euler's load of a solid column between clamps at the latest.
+  const double column = std::pow(units::pi * (rope_radius(p) + p.topology.largest_radius()) / f.length, 2);
+  f.strain +=
+      std::max(pulled, 0.0) / f.length + std::min(std::max(-pulled, 0.0) / f.length, column) + tension / k.stretch;
   f.curvature += bent / f.length;
   if (bent > 0) {
     f.strain += rope_radius(p) * bent / f.length;

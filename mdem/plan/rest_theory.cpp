@@ -41,6 +41,8 @@ RestTheory rest_theory(const Scene& scene, const Prepared& p) {
   if (load.application == TwistLoad::Application::tangential)
     refuse(scene, "twist.application", "is \"tangential\": no couple winds the tubes");
   if (load.geometric_only) refuse(scene, "twist.geometric_only", "has states of rest of its own");
+  if (load.unload_rate > 0)
+    refuse(scene, "twist.unload_rate_nN_nm_per_ps", "takes away the moment under which it rests");
   const TubeType& tube = p.topology.type_of(0);
   double moment_of_area = 0;  // S
   for (int t = 0; t < tubes; ++t) {
@@ -50,7 +52,7 @@ RestTheory rest_theory(const Scene& scene, const Prepared& p) {
   const double modulus = 2 / std::sqrt(3.0) * pair_stiffness(*p.interaction.law, tube.element_length);
   const double disc2 = tubes * std::sqrt(3.0) / 2 * p.spacing * p.spacing / units::pi;
   const double crowding = 9 * units::pi * modulus * std::pow(disc2, 3) / 384;
-  const double moment = load.of_each(tubes);
+  const double moment = load.hand() * load.of_each(tubes);
   return {moment / (tube.bond.bend + 2 * crowding / moment_of_area), moment / tube.bond.bend};
 }
 

@@ -170,7 +170,7 @@ double HelixTheory::growth(double moment, double winding) const {
 }
 
 double HelixTheory::winding_of(double turn, double moment) const {
-  return turn / (moment / tubes_in_unit * rope.length / rope.bend);
+  return std::fabs(turn) / (moment / tubes_in_unit * rope.length / rope.bend);
 }
 
 std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& p) {

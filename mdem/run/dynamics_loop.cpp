@@ -87,7 +87,7 @@ std::string DynamicsLoop::status() const {
   const LogRow& row = run_.last_row;
   std::string text = fmt::format("{:8.2f} ps", time);
   if (const MomentRamp* ramp = run_.moving.scene.moment_ramp())
-    text += fmt::format("  moment {:5.1f} nN nm", ramp->moment_at(time) / units::nN_nm);
+    text += fmt::format("  moment {:5.1f} nN nm", ramp->upper_moment_at(time) / units::nN_nm);
   return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", row["beta_deg"],
                             row["Q"], row["twist_eV"], row["bend_eV"], row["vdw_eV"]);
 }

@@ -11,9 +11,10 @@ EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const
   const State& s = simulation.state();
   EnergyAccount account;
   account.time_step = simulation.time_step() / simulation.divided();
-  if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->moment_at(s.time);
+  if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->upper_moment_at(s.time);
   account.potential = simulation.forces().energy;
-  account.terms = term_readings(simulation.interaction(), simulation.forces().term_energy, simulation.term_accounts());
+  account.terms =
+      term_readings(simulation.interaction(), simulation.forces().term_energy, simulation.term_accounts());
   account.kinetic = kinetic_energy(simulation.topology(), s);
   account.work = simulation.work();
   account.dissipated = simulation.dissipated();
@@ -31,7 +32,7 @@ void refuse_stops_without_value(const Scene& scene, const LogRow& first) {
       throw InputError({scene.path, 0, shape ? "stop.shape" : "stop.column"},
                        "\"" + column + "\" has no value in this scene, so that the rule would never stop it",
                        "take a column that has one; tubes that are not side by side have no centre line, a rope "
-                       "without inner tubes no core");
+                       "without inner tubes no core, and one rope alone no ply angle");
   }
 }
 

@@ -27,6 +27,7 @@ struct MomentRamp {
   double hold = 0;                         // ps after the ramp
   double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays
   Reading reading = Reading::per_tube;
+  bool left_handed = false;     // it turns the upper end to the left
   bool geometric_only = false;  // spins are relaxed, so that no bond holds the moment by its twist
 
   double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
@@ -38,6 +39,9 @@ struct MomentRamp {
     const double ramped = rate > 0 ? rate * time : moment;
     return ramped < moment ? ramped : moment;
   }
+  double hand() const { return left_handed ? -1 : 1; }
+  // eV, on the upper end; right-handed: positive.
+  double upper_moment_at(double time) const { return left_handed ? 0 - moment_at(time) : moment_at(time); }
   double of_each(int tubes) const { return reading == Reading::per_tube ? moment : moment / tubes; }  // eV
 };
 

@@ -46,6 +46,7 @@ constexpr double shortest_usual = 0.75, longest_usual = 1.34;
 constexpr const char* length_words = "element_length_nm: ";
 constexpr const char* types_words = "tube_types: ";
 constexpr const char* strands_words = "strands_begin_with_tubes: ";
+constexpr const char* ropes_words = "ropes_begin_with_strands: ";
 
 struct Row {
   int tube = 0;
@@ -89,25 +90,30 @@ int stated_sets(const CsvReader& csv) {
   return 0;
 }
 
-// The first tubes of strands that a comment before the present line names; none: no comment does.
-std::vector<int> stated_strands(const CsvReader& csv) {
+// The numbers that a comment before the present line lists behind `words`, rising from 0; none: no comment does.
+std::vector<int> stated_begins(const CsvReader& csv, const char* words, const char* what, const char* each) {
   std::vector<int> first;
   for (const std::string_view comment : csv.comments()) {
-    if (comment.rfind(strands_words, 0) != 0) continue;
-    const std::string text(comment.substr(std::string_view(strands_words).size()));
+    if (comment.rfind(words, 0) != 0) continue;
+    const std::string text(comment.substr(std::string_view(words).size()));
     const char* at = text.c_str();
     for (char* end = nullptr;; at = end + 1) {
-      const long tube = std::strtol(at, &end, 10);
-      if (end == at || tube != (first.empty() ? 0 : std::max<long>(tube, first.back() + 1L)) ||
-          tube >= max_elements || (*end != ',' && *end != '\0'))
-        csv.fail("", fmt::format("the comment above says \"{}\" of the strands", printable(text, 40)),
-                 "write the first tube of each strand, rising from 0, with commas between them, or take the "
-                 "comment away");
-      first.push_back(static_cast<int>(tube));
+      const long begin = std::strtol(at, &end, 10);
+      if (end == at || begin != (first.empty() ? 0 : std::max<long>(begin, first.back() + 1L)) ||
+          begin >= max_elements || (*end != ',' && *end != '\0'))
+        csv.fail(
+            "", fmt::format("the comment above says \"{}\" of the {}", printable(text, 40), what),
+            fmt::format("write the first {}, rising from 0, with commas between them, or take the comment away",
+                        each));
+      first.push_back(static_cast<int>(begin));
       if (*end == '\0') return first;
     }
   }
   return first;
+}
+
+std::vector<int> stated_strands(const CsvReader& csv) {
+  return stated_begins(csv, strands_words, "strands", "tube of each strand");
 }
 
 class StateReader {
@@ -122,6 +128,7 @@ class StateReader {
         check_length();
         check_sets();
         topology_.strand_begin = stated_strands(csv_);
+        topology_.rope_begin = stated_begins(csv_, ropes_words, "ropes", "strand of each rope");
       }
       if (rows_.size() == static_cast<std::size_t>(max_elements))
         fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
@@ -132,6 +139,7 @@ class StateReader {
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
     if (!stated_) check_spacing();
     close_strands();
+    close_ropes();
     return state();
   }
 
@@ -169,6 +177,17 @@ class StateReader {
       holes += (rows_[i].position - rows_[i - 1].position).norm() - element_length_;
       topology_.strand_holes = std::max(topology_.strand_holes, holes);
     }
+  }
+
+  void close_ropes() {
+    std::vector<int>& begin = topology_.rope_begin;
+    if (begin.empty()) return;
+    if (begin.back() >= topology_.strands())
+      throw InputError({path_, 0, ""},
+                       fmt::format("its comment has a rope that begins with strand {}, and there are {} strands",
+                                   begin.back(), topology_.strands()),
+                       "take the comment away, or complete the file");
+    begin.push_back(topology_.strands());
   }
 
   // Compares the element length that the file states with the one that its elements are read with.
@@ -294,6 +313,7 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
   topology.strand_begin.clear();
+  topology.rope_begin.clear();
   topology.strand_holes = 0;
   state = StateReader(path, topology).read();
 }
@@ -314,6 +334,9 @@ std::string state_csv(const Topology& topology, const State& s) {
   if (!topology.strand_begin.empty())
     text += fmt::format("# {}{}\n", strands_words,
                         fmt::join(topology.strand_begin.begin(), topology.strand_begin.end() - 1, ","));
+  if (!topology.rope_begin.empty())
+    text += fmt::format("# {}{}\n", ropes_words,
+                        fmt::join(topology.rope_begin.begin(), topology.rope_begin.end() - 1, ","));
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

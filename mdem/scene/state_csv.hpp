@@ -2,8 +2,8 @@
 // a line, those of a tube one after another along it, tubes numbered 0, 1, 2, ... in order. Empty lines and lines
 // that start with # are skipped. The quaternion turns the element's own z into its tube axis. The line below the
 // header, "# element_length_nm: 1.356", states the length of an element, and "# tube_types: 0,1,1" which of several
-// parameter sets each tube has, "# strands_begin_with_tubes: 0,3" which tubes follow one another in line; a file may
-// leave them out.
+// parameter sets each tube has, "# strands_begin_with_tubes: 0,3" which tubes follow one another in line, and
+// "# ropes_begin_with_strands: 0,7" which make a rope of their own; a file may leave them out.
 #pragma once
 
 #include <string>

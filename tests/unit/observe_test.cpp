@@ -642,6 +642,63 @@ TEST(ObservedValidity, CountsBondsBeyondTheLimits) {
   EXPECT_NEAR(observe_rope(rope, {}).largest_bond_twist, 0.1, 1e-12);
 }
 
+// --- Plied ropes
+
+// `ropes` ropes of seven tubes round a curve, their middles `radius` from it, turned by `twist` in all as one body.
+Rope plied(int ropes, const std::vector<Vector3>& curve, double radius, double twist) {
+  std::vector<Vector2d> lattice;
+  for (int k = 0; k < ropes; ++k)
+    for (const Vector2d& p : hexagonal(1))
+      lattice.push_back(Eigen::Rotation2Dd(2 * units::pi * k / ropes) * (p + Vector2d(radius, 0)));
+  Rope rope = bent_rope(lattice, curve, twist);
+  for (int k = 0; k <= ropes; ++k) rope.topology.rope_begin.push_back(7 * k);
+  return rope;
+}
+
+RopeObservation observe_plies(const Rope& rope) {
+  return observe(rope.topology, rope.state, rope_shells(rope.topology, rope.state, 0.0), {Validity{}}, 0.0,
+                 spacing);
+}
+
+TEST(ObservedPlies, AngleIsThatOfTheirHelices) {
+  constexpr int n = 61;
+  constexpr double radius = 2.6;
+  std::vector<Vector3> line, circle;
+  for (int s = 0; s < n; ++s) {
+    const double z = s * element_length, bend = 60;
+    line.emplace_back(0, 0, z);
+    circle.emplace_back(bend * (1 - std::cos(z / bend)), 0, bend * std::sin(z / bend));
+  }
+  for (const double rate : {0.02, 0.1, -0.1}) {
+    const double twist = rate * (n - 1) * element_length, theta = std::atan(radius * rate);
+    EXPECT_NEAR(observe_plies(plied(2, line, radius, twist)).ply_angle, theta, 1e-9) << rate;
+    EXPECT_NEAR(observe_plies(plied(3, line, radius * 1.2, twist)).ply_angle, std::atan(1.2 * radius * rate), 1e-9);
+    EXPECT_NEAR(observe_plies(plied(2, circle, radius, twist)).ply_angle, theta, 2e-3 * std::fabs(theta)) << "bent";
+  }
+  EXPECT_TRUE(std::isnan(observe_plies(plied(1, line, 0, 1)).ply_angle)) << "one rope";
+}
+
+// The angle to the axis of the whole is none of a rope's own: these tubes lean by less to the middle of their rope.
+TEST(ObservedPlies, TwistAndPackingAreThoseOfEachRope) {
+  std::vector<Vector3> line;
+  for (int s = 0; s < 61; ++s) line.emplace_back(0, 0, s * element_length);
+  const double rate = 0.1, twist = rate * 60 * element_length;
+  const Rope rope = plied(2, line, std::sqrt(7.0) / 2 * spacing, twist);
+  const RopeObservation o = observe_plies(rope);
+  Rope one = rope;
+  one.topology.rope_begin.clear();
+  EXPECT_LT(o.beta, 0.7 * observe_plies(one).beta);
+  EXPECT_NEAR(o.beta, std::atan(rate * spacing), 0.15 * o.beta) << "by inclination of the rope";
+  EXPECT_NEAR(o.geometric_twist, twist, 1e-6 * twist) << "of all about the axis";
+  EXPECT_EQ(o.middle.contacts, 24);
+  EXPECT_EQ(o.middle.charge, 0);
+  EXPECT_EQ(o.middle.charge_delaunay, 0);
+  EXPECT_EQ(o.middle.voids, 0);
+  const RopeShells shells = rope_shells(rope.topology, rope.state, 0.0);
+  EXPECT_EQ(sum(shells.internal), 2) << "the core of each";
+  EXPECT_EQ(o.middle.neighbours[0] + o.middle.neighbours[7], 12);
+}
+
 // --- Scenes that are no rope
 
 TEST(ObservedNoRope, TubesOfUnequalLengthsGiveTheQuantitiesOfTubes) {

@@ -419,7 +419,7 @@ const SceneTemplate& template_named(const std::string& name) {
 
 TEST(Templates, AllAreReadAndBuilt) {
   const Folder folder;
-  EXPECT_EQ(scene_templates().size(), 18u);
+  EXPECT_EQ(scene_templates().size(), 21u);
   for (const SceneTemplate& t : scene_templates()) {
     SCOPED_TRACE(t.name + "\n" + t.text);
     Scene scene;
@@ -723,6 +723,7 @@ TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
   Scene s = scene_from(rope + "unload_rate_nN_nm_per_ps = 1\nunloaded_ps = 5\nhand = \"left\"\n");
   const double times[] = {0, 1, 2, 5, 7, 9, 12}, moments[] = {0, 2, 4, 4, 2, 0, 0};
   for (int k = 0; k < 7; ++k) EXPECT_NEAR(twist_of(s).moment_at(times[k]), moments[k] * units::nN_nm, 1e-12) << times[k];
+  EXPECT_NEAR(s.moment_ramp()->upper_moment_at(7), -2 * units::nN_nm, 1e-12) << "in the log";
   const Prepared p = prepare(s);
   EXPECT_NEAR(p.duration, 14, 1e-9);
   std::vector<PointLoad> on;

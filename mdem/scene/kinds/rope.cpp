@@ -16,17 +16,26 @@ namespace {
 constexpr int least_elements = 3;      // of a tube
 constexpr double hardest_push = 0.05;  // nm, of ends in line
 
-void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
+}  // namespace
+
+void check_rope_size(const TomlTable& t, const Scene& scene, const RopeSource& rope, int ropes) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
   if (below != above && rope.packing == RopeSource::Packing::hexagonal)
     throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
                   fmt::format("the nearest are {} and {}; packing = \"round\" takes any number", below, above));
   const double elements = std::round(rope.length / scene.element_length);
-  if (elements < 3)
+  if (elements < least_elements)
     throw t.error("length_nm",
                   fmt::format("is {} nm, {} elements of {} nm", rope.length, elements, scene.element_length),
-                  fmt::format("at least 3 elements, {:.4g} nm, are needed", 3 * scene.element_length));
-  check_size(t, "length_nm", rope.tubes, elements);
+                  fmt::format("at least {} elements, {:.4g} nm, are needed", least_elements,
+                              least_elements * scene.element_length));
+  check_size(t, "length_nm", double{1} * ropes * rope.tubes, elements);
+}
+
+namespace {
+
+void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
+  check_rope_size(t, scene, rope, 1);
   const double least = least_elements * scene.element_length;
   const std::pair<const char*, bool> of_ends[] = {{"tube_length_deviation_nm", rope.deviation > 0},
                                                   {"gap_nm", rope.gap > 0},

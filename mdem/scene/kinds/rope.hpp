@@ -1,5 +1,5 @@
-// [rope] parallel tubes along z on a hexagonal lattice, centred on the origin. Each place of the cross-section has one
-// tube as long as the rope, or a strand: tubes of given lengths in line, with their ends inside.
+// [rope] parallel tubes along z on a hexagonal lattice, centred on the origin. Each place of the cross-section has
+// one tube as long as the rope, or a strand: tubes of given lengths in line, with their ends inside.
 #pragma once
 
 #include "scene/kinds/scene_kind.hpp"
@@ -13,7 +13,7 @@ class RopeSource : public Source {
   // Where tubes of neighbouring strands end: at one height, shifted by a third of a tube, anywhere.
   enum class Stagger { none, brick, random };
 
-  int tubes = 91;           // in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
+  int tubes = 91;  // in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   Packing packing = Packing::hexagonal;
   double length = 0;        // nm, rounded to whole elements
   double spacing = 0;       // nm; 0: that at which two tubes bind best
@@ -30,11 +30,16 @@ class RopeSource : public Source {
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
   std::string not_for_lammps() const override { return tube_length > 0 ? "rope.tube_length_nm" : ""; }
 
- private:
+  // Of the strands in a cross-section (nm), about its middle.
   std::vector<std::pair<double, double>> places(double spacing_of_tubes) const;
+
+ private:
   void place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
   // Numbers of elements from the lower end of a strand at which one tube ends and the next begins.
   std::vector<int> cuts(int strand_shift, double element_length, double gap_here, Random& random) const;
 };
+
+// Refuses a packing without a place for each tube, tubes of fewer than three elements, and more elements than fit.
+void check_rope_size(const TomlTable& t, const Scene& scene, const RopeSource& rope, int ropes);
 
 }  // namespace ropewalk

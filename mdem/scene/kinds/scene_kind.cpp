@@ -14,6 +14,7 @@ namespace ropewalk {
 
 // One line for each shipped kind, and one below.
 SceneKind rope_kind();
+SceneKind plies_kind();
 SceneKind film_kind();
 SceneKind chain_kind();
 SceneKind state_kind();
@@ -23,6 +24,7 @@ namespace {
 std::vector<SceneKind>& kinds_of_scenes() {
   static std::vector<SceneKind> kinds = {
       rope_kind(),
+      plies_kind(),
       film_kind(),
       chain_kind(),
       state_kind(),

@@ -1,5 +1,5 @@
 // The register of kinds of scenes (scene/source.hpp). A kind is one file: its class, its keys and its entry here;
-// [rope], [film], [chain] and [state] are the shipped ones.
+// [rope], [plies], [film], [chain] and [state] are the shipped ones.
 #pragma once
 
 #include <functional>

@@ -305,7 +305,12 @@ std::optional<LoadEffect> GripLoad::effect() const {
   out.ramp = lasts();
   LoadEffect::Clamp clamp;
   const double tubes = each ? 1 : static_cast<double>(elements.size()) / depth;
-  if (axes[z].is == Is::moved) clamp.pull = schedules_[z].largest();
+  if (axes[z].is == Is::moved) {
+    const double outwards = end == upper_end || axes[z].strain ? 1 : -1;
+    const bool presses = std::all_of(axes[z].points.begin(), axes[z].points.end(),
+                                     [&](const Schedule::Point& p) { return outwards * p.value <= 0; });
+    clamp.pull = presses ? -schedules_[z].largest() : schedules_[z].largest();
+  }
   if (axes[z].is == Is::loaded) clamp.tension = schedules_[z].largest() / tubes;
   for (const std::size_t about : {std::size_t{3}, std::size_t{4}})
     if (axes[about].is == Is::moved) clamp.bend += schedules_[about].largest();

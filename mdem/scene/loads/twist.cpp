@@ -272,9 +272,8 @@ void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstra
     if (topology.begins_strand(t)) lower.push_back(topology.tube_begin[t]);
     if (topology.ends_strand(t)) upper.push_back(topology.tube_begin[t + 1] - 1);
   }
-  const double upper_sign = twist.left_handed ? -1 : 1;
-  loads.add(twist.on_grip(upper, upper_sign));
-  loads.add(twist.on_grip(lower, -upper_sign));
+  loads.add(twist.on_grip(upper, twist.hand()));
+  loads.add(twist.on_grip(lower, -twist.hand()));
 }
 
 }  // namespace ropewalk

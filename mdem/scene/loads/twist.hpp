@@ -26,7 +26,6 @@ class TwistLoad : public Load, public MomentRamp {
  public:
   enum class Application { couple, follower, conservative, tangential };
   double unloaded = 0;     // ps without a moment, at the end
-  bool left_handed = false;
   Application application = Application::couple;
   bool lateral_free = true;
   bool axial_free = true;

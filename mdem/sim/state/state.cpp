@@ -20,11 +20,18 @@ bool Topology::ends_strand(int tube) const {
   return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube + 1);
 }
 
+std::pair<int, int> Topology::strands_of_rope(int rope) const {
+  ROPEWALK_EXPECTS(rope >= 0 && rope < ropes());
+  if (rope_begin.empty()) return {0, strands()};
+  return {rope_begin[static_cast<std::size_t>(rope)], rope_begin[static_cast<std::size_t>(rope) + 1]};
+}
+
 Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   ROPEWALK_EXPECTS(static_cast<int>(flags.size()) == topology.elements() && !topology.part);
   Topology cut;
   cut.types = topology.types;
   cut.strand_holes = topology.strand_holes;
+  cut.rope_begin = topology.rope_begin;
   cut.strand_begin = {0};
   for (int t = 0; t < topology.tubes(); ++t) {
     int begin = topology.tube_begin[t];
@@ -43,6 +50,7 @@ Topology strands_of(const Topology& topology) {
   Topology strands;
   strands.types = topology.types;
   strands.strand_holes = topology.strand_holes;
+  strands.rope_begin = topology.rope_begin;
   for (int s = 0; s < topology.strands(); ++s) {
     const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),
                behind = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s) + 1]);

@@ -127,12 +127,17 @@ struct Topology {
   // Ends of tubes that follow one another in a strand have a contact of their own (forces/terms/tube_ends.hpp):
   // near them elements of both tubes do not touch each other otherwise, like those of one tube.
   bool ends_meet = false;
+  // Ropes that are plied: the first strand of each, and the number of strands. Empty: all are one rope.
+  std::vector<int> rope_begin;
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
   int strands() const { return strand_begin.empty() ? tubes() : static_cast<int>(strand_begin.size()) - 1; }
+  int ropes() const { return rope_begin.empty() ? 1 : static_cast<int>(rope_begin.size()) - 1; }
+  // The strands of a rope: the first, and the one behind the last.
+  std::pair<int, int> strands_of_rope(int rope) const;
   // Whether the first end of a tube, or its last one, is that of its strand.
   bool begins_strand(int tube) const;
   bool ends_strand(int tube) const;

@@ -123,7 +123,7 @@ TEST(CrossedKind, IsInHelpTemplatesAndErrors) {
   EXPECT_EQ(message("length_nm = 1\n"),
             "crossed.toml:4: crossed.length_nm: makes fewer than two elements; take longer tubes");
   EXPECT_THAT(message("length_nm = 20\n[chain]\nelements = 5\n"),
-              HasSubstr("a scene has exactly one of [rope], [film], [chain], [state] and [crossed]"));
+              HasSubstr("a scene has exactly one of [rope], [plies], [film], [chain], [state] and [crossed]"));
 }
 
 }  // namespace

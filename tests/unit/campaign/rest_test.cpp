@@ -85,12 +85,12 @@ TEST(Rest, AsksForTheSameBranch) {
 // 19 and 91 published tubes of 67.8 nm under 35 nN nm come to rest at 228 and 65 degrees over 66.4 nm
 // (data/campaigns/rest). A disc of 19 tubes is a rough one.
 TEST(RestTheory, IsNearWhereRopesRest) {
-  const auto theory = [](int tubes) {
-    const Scene scene =
-        scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = " +
-                          std::to_string(tubes) +
-                          "\nlength_nm = 67.8\n[twist]\nmoment_nN_nm = 35\nrate_nN_nm_per_ps = 1\nhold_ps = 10\n",
-                      "scene.toml");
+  const auto theory = [](int tubes, const std::string& more = "") {
+    const Scene scene = scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = " +
+            std::to_string(tubes) +
+            "\nlength_nm = 67.8\n[twist]\nmoment_nN_nm = 35\nrate_nN_nm_per_ps = 1\nhold_ps = 10\n" + more,
+        "scene.toml");
     Scene copy = scene;
     const Prepared p = prepare(copy);
     return rest_theory(copy, p);
@@ -98,6 +98,23 @@ TEST(RestTheory, IsNearWhereRopesRest) {
   EXPECT_NEAR(theory(19).compact * 66.44 / units::degree, 228, 0.22 * 228);
   EXPECT_NEAR(theory(91).compact * 66.44 / units::degree, 65, 0.1 * 65);
   EXPECT_NEAR(theory(91).open * 66.44 / units::degree, 372, 2);
+  EXPECT_EQ(theory(91, "hand = \"left\"\n").compact, -theory(91).compact);
+  EXPECT_THROW(theory(19, "unload_rate_nN_nm_per_ps = 1\n"), InputError) << "it would rest under no moment";
+}
+
+TEST(RestTheory, LeftHandedRopesBeginWoundToTheLeft) {
+  const auto sweep = [](const std::string& more) {
+    Scene scene = scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
+        "length_nm = 67.8\n[twist]\nmoment_nN_nm = 35\nrate_nN_nm_per_ps = 1\n" +
+            more,
+        "scene.toml");
+    const Prepared p = prepare(scene);
+    return rest_sweep(scene, p, rest_theory(scene, p), -1);
+  };
+  std::string right = sweep("hold_ps = 9\n");
+  const auto at = right.find("= [") + 3, comma = right.find(", ", at) + 2;
+  EXPECT_EQ(sweep("hold_ps = 9\nhand = \"left\"\n"), right.insert(comma, "-").insert(at, "-"));
 }
 
 }  // namespace

@@ -25,14 +25,17 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "step,time_ps,time_step_fs,moment_nN_nm,torque_upper_nN_nm,torque_lower_nN_nm,torque_upper_x_nN_nm,torque_"
       "upper_y_nN_nm,"
       "torque_lower_x_nN_nm,torque_lower_y_nN_nm,tension_upper_nN,tension_lower_nN,rotation_deg,work_upper_eV,"
-      "work_lower_eV,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,damping_eV,thermostat_eV,"
+      "work_lower_eV,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,damping_eV,"
+      "thermostat_eV,"
       "balance_eV,stored_MJ_per_kg,stored_stretch_MJ_per_kg,stored_bend_MJ_per_kg,stored_twist_MJ_per_kg,"
       "stored_contact_MJ_per_kg,cohesion_lost,ends_apart_nm,ends_strain,least_tension_nN,most_tension_nN,"
-      "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,Q,Q_"
+      "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,ply_angle_"
+      "deg,Q,Q_"
       "delaunay,"
       "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,middle_amplitude_"
       "nm,"
-      "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_tex,"
+      "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_"
+      "tex,"
       "tether_eV,tether_lost_eV,tethers_broken,friction_eV,friction_slip_eV,friction_drag_eV,friction_slips,"
       "links_eV,links_lost_eV,links_formed,links_broken,failure_lost_eV,bonds_broken,ends_eV\n");
   const Topology topology;
@@ -64,6 +67,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.beta = 0.5;
   o.physical_twist = 1.25;
   o.geometric_twist = -2.5;
+  o.ply_angle = -0.125;
   o.middle.charge = -1;
   o.middle.charge_delaunay = 2;
   o.middle.contacts = 210;
@@ -81,11 +85,14 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.overtwisted = 5;
   o.overstretched = 6;
   o.largest_bond_twist = 0.75;
-  EXPECT_EQ(log_line(LogRow({topology, state, o, l, 2, a})),
-            "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.5,0.125,0.25,5.5,1,1,1.5,"
-            "2,1,66,"
-            "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-1,2,210,3,"
-            "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(
+      log_line(LogRow({topology, state, o, l, 2, a})),
+      "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.5,0.125,0.25,5.5,1,1,1.5,"
+      "2,1,66,"
+      "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-7.16197243913529,-1,2,210,"
+      "3,"
+      "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,"
+      "0,0,0,0\n");
 }
 
 TEST(Observables, NamesAreUniqueAndEndInTheirUnit) {
@@ -121,7 +128,8 @@ TEST(Observables, WrongEntriesAreRefused) {
 TEST(Observables, FramesGiveAllButLoadsAndEnergies) {
   for (const Observable& o : observables()) {
     bool only_run = o.name == "cohesion_lost" || o.name == "rotation_deg" || o.name == "time_step_fs";
-    for (const char* part : {"_eV", "moment_", "torque_", "tension_upper", "tension_lower", "stored_", "tethers_", "_slips", "links_", "bonds_broken", "stress_"})
+    for (const char* part : {"_eV", "moment_", "torque_", "tension_upper", "tension_lower", "stored_", "tethers_",
+                             "_slips", "links_", "bonds_broken", "stress_"})
       only_run = only_run || o.name.find(part) != std::string::npos;
     EXPECT_EQ(in_frames(o.group), !only_run) << o.name;
   }
