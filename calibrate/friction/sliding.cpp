@@ -55,8 +55,8 @@ std::string start(const SlidingTubes& tubes, const Register& at, double distance
              -0.6 * tubes.radius_a / angstrom, (distance + 0.6 * tubes.radius_b) / angstrom);
 }
 
-// The mean of a force that also has the corrugation's period along its way `s` (nm). Blocks of 1 ps say how many of
-// its samples are independent.
+}  // namespace
+
 Measured mean_without_period(const std::vector<double>& force, const std::vector<double>& s, double period) {
   const auto n = static_cast<Eigen::Index>(force.size());
   Eigen::MatrixXd form(n, 5);
@@ -77,8 +77,6 @@ Measured mean_without_period(const std::vector<double>& force, const std::vector
                                    rest.squaredNorm() / static_cast<double>(n - 5));
   return {fit[0], std::sqrt(variance * inverse(0, 0))};
 }
-
-}  // namespace
 
 std::string pair_commands(const Potential& potential, const AtomLaw& law) {
   const auto refuse = [&](const std::string& line) {

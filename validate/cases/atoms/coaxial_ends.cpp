@@ -107,6 +107,10 @@ CaseResult run(const CaseContext& context) {
                   {"energy", "eV"}, "Averaged over the turns of the tubes about their axis.",
                   {{"model", gap, model, 1}, points});
   }
+  result.remarks.push_back(
+      "The model sums the same law over circles of atoms, each averaged over its turn; nothing is fitted. What is "
+      "left is the finite number "
+      "of turns of the atoms.");
   return result;
 }
 
@@ -121,8 +125,8 @@ const RegisteredCase registered([] {
   c.title = "Two tubes in line, end against end";
   c.why =
       "Tubes of a yarn end inside of it, and the next one in line begins there. A law of endless tubes knows axes "
-      "and no ends: it holds "
-      "two (10,10) in line 1.43 nm apart.";
+      "and no ends: "
+      "it holds two tubes in line more than a nanometre apart.";
   c.setup =
       "Two relaxed, frozen tubes {tube} in line, cut flat, at gaps from 0.16 to 1 nm; the same two tubes as a "
       "strand of the model.";
