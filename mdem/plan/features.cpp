@@ -109,7 +109,8 @@ void add_clamps(const Prepared& p, SceneFeatures& f) {
   }
   f.between_clamps = between;
   f.length_held = held;
-  // Ends that come nearer bend the rope aside, by Euler's load of a solid column between clamps at the latest.
+  // Pressed ends strain a rope until it bends aside. A solid column between two clamps buckles at this strain
+  // (Euler), and a rope of tubes that slide buckles earlier.
   const double column = std::pow(units::pi * (rope_radius(p) + p.topology.largest_radius()) / f.length, 2);
   f.strain +=
       std::max(pulled, 0.0) / f.length + std::min(std::max(-pulled, 0.0) / f.length, column) + tension / k.stretch;

@@ -19,15 +19,14 @@ def friction_of(point):
 
 
 if question == "twisted":
-    print("length_nm,moment_nN_nm,friction,beta_deg,geometric_twist_deg,Q,void_area_nm2,kinetic_eV,dissipated_eV,damping_eV,friction_slip_eV")
+    print("length_nm,friction,beta_deg,geometric_twist_deg,Q,void_area_nm2,kinetic_eV,dissipated_eV,damping_eV,friction_slip_eV")
 elif question == "transfers":
     print("friction,force_nN,work_nN,damping_nN,friction_slip_nN")
 else:
     print("rate_deg_per_ps,friction,put_in_eV,lost_eV,damping_eV,friction_slip_eV,kinetic_eV")
 for point in csv.DictReader(open(os.path.join(campaign, "table.csv"), encoding="utf-8")):
     if question == "twisted":
-        print(point["rope.length_nm"], point["twist.moment_nN_nm"] if "twist.moment_nN_nm" in point else "35",
-              f'"{friction_of(point)}"',
+        print(point["rope.length_nm"], f'"{friction_of(point)}"',
               *(f"{float(point[k]):.6g}" for k in ("beta_deg", "geometric_twist_deg", "Q", "void_area_nm2", "kinetic_eV",
                                                    "dissipated_eV", "damping_eV", "friction_slip_eV")), sep=",")
         continue

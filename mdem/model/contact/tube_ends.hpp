@@ -7,16 +7,17 @@
 //
 //   V(s) = sum_k,l N_i N_j <v(rho)>,   rho^2 = z^2 + r_i^2 + r_j^2 - 2 r_i r_j cos(theta),
 //
-// over the circles k of one and l of the other, z = s + z_k + z_l apart along the axis; <> is the mean over theta,
-// v the Lennard-Jones energy of two atoms, cut off without a shift. The tubes are taken as endless at their far
-// ends. Where V has risen from the bottom of its well by half of the depth, the second-order Taylor polynomial
-// continues it.
+// over the circles k of one tube and l of the other, which lie z = s + z_k + z_l apart along the axis. <> is the
+// mean over theta, and v is the Lennard-Jones energy of two atoms, cut off without a shift. The far ends of both
+// tubes are out of reach. Where V has risen from the bottom of its well by half of the depth, its second-order
+// Taylor polynomial continues it.
 //
-// Off the common axis, by the distance delta, V counts with the weight
+// Where the ends lie apart across their common axis, by the distance delta, their energy is V W with the weight
 //
-//   W = (1 - q)^3,   q = (delta/(r_i + r_j))^2 < 1,
+//   W = (1 - q)^3 for q < 1, and 0 beyond,   q = (delta/(r_i + r_j))^2.
 //
-// a choice: ends that have passed each other do not meet. Units nm, eV.
+// No atoms were measured for W: we chose it, so that ends that have passed each other have no contact. Units nm,
+// eV.
 #pragma once
 
 #include <algorithm>

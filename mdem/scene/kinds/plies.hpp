@@ -18,9 +18,10 @@ namespace ropewalk {
 class PliesSource : public Source {
  public:
   int ropes = 2;
-  RopeSource rope;                  // each of them
-  double winding = 0;               // rad per nm of z, of the ropes about z; right-handed: positive
-  std::optional<double> own_twist;  // rad per nm of a rope; none: as wound with the others as one body
+  RopeSource rope;     // each of them
+  double winding = 0;  // by how much the ropes turn about z, rad per nm of z; a right-handed turn is positive
+  std::optional<double> own_twist;  // by how much each rope turns about its own middle, rad per nm of its length;
+                                    // none: like one body that is wound
   InputError::Place typed;          // where the winding stands, for messages
 
   Sizes sizes(double element_length) const override;

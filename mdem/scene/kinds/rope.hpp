@@ -13,7 +13,7 @@ class RopeSource : public Source {
   // Where tubes of neighbouring strands end: at one height, shifted by a third of a tube, anywhere.
   enum class Stagger { none, brick, random };
 
-  int tubes = 91;  // in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
+  int tubes = 91;  // number of tubes in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   Packing packing = Packing::hexagonal;
   double length = 0;        // nm, rounded to whole elements
   double spacing = 0;       // nm; 0: that at which two tubes bind best

@@ -26,7 +26,8 @@ struct DriveKind {
 // InputError at the place where there is no such tube or element.
 int element_of_tube(const Topology& topology, int tube, int element, const InputError::Place& place);
 
-// The two tube types of the key `types`; none where the key is missing. Throws InputError.
+// Reads the key `types`: two tube types, or an empty list where the table does not have this key. Throws InputError
+// for types that the scene does not have.
 std::vector<int> pair_of_types(const TomlTable& t, const Scene& scene);
 
 // In the order of help and templates.

@@ -371,8 +371,8 @@ class LinkTerm : public ForceTerm {
     for (const Link& link : links_)
       if (link.broke == never)
         for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(e)];
-    // An element has room for a whole number of links. The fraction is rounded up or down at random, element by
-    // element, so that the mean room is `most` times the length.
+    // An element has room for a whole number of links. Its share, `most` times its length, is rounded up or down at
+    // random, so that the mean over all elements is that share.
     const auto full = [&](int e) {
       const double room = law_.most * element_length_ + drawn(law_, e, e, 0, room_question);
       return count[static_cast<std::size_t>(e)] + 1 > room;

@@ -14,6 +14,7 @@
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"
+#include "terms_alone.hpp"
 
 namespace ropewalk {
 namespace {
@@ -39,31 +40,10 @@ Scene rope(const std::string& friction, const std::string& run = "duration_ps = 
 }
 
 // The forces of the friction alone. Contacts begin where the rope starts, and remember.
-class Alone {
+class Alone : public TermsAlone {
  public:
   explicit Alone(const std::string& friction, const std::string& more = "")
-      : scene_(rope(friction, "duration_ps = 5\n", more)), p(prepare(scene_)) {
-    in_ = p.interaction;
-    in_.damping = {};
-    in_.precision = Interaction::Precision::full;
-    without_ = in_;
-    without_.terms.clear();
-    list_ = NeighbourList(in_, 2);
-    list_.build(p.topology, p.state);
-    at(p.state);
-  }
-  // As in a step when `passed`: what is beyond its strength slides.
-  Forces at(const State& state, bool passed = false) {
-    Forces with(state.size()), without(state.size());
-    engine_.compute(p.topology, in_, list_, state, with,
-                    {Parts::all, true, passed ? std::optional(0.01) : std::nullopt});
-    plain_.compute(p.topology, without_, list_, state, without);
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      with.force.add(i, -without.force[i]);
-      with.torque.add(i, -without.torque[i]);
-    }
-    return with;
-  }
+      : TermsAlone(rope(friction, "duration_ps = 5\n", more)) {}
   double length() const { return p.topology.length_of(0) * p.topology.types[0].element_length; }
   // The first tube, in the middle of six others, moved along them and turned about its axis.
   State moved(double along, double turn) const {
@@ -86,17 +66,6 @@ class Alone {
     }
     return s;
   }
-
- private:
-  Scene scene_;
-
- public:
-  Prepared p;
-
- private:
-  Interaction in_, without_;
-  NeighbourList list_;
-  ForceEngine engine_, plain_;
 };
 
 Vector3 on_first_tube(const Alone& rope, const Vec3Array& rows) {

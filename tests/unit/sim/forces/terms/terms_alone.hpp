@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -24,9 +25,11 @@ class TermsAlone {
     list_.build(p.topology, p.state);
     at(p.state);
   }
-  Forces at(const State& state) {
+  // As in a step when `passed`: the memory of the terms moves on.
+  Forces at(const State& state, bool passed = false) {
     Forces with(state.size()), without(state.size());
-    engine_.compute(p.topology, in_, list_, state, with);
+    engine_.compute(p.topology, in_, list_, state, with,
+                    {Parts::all, true, passed ? std::optional(0.01) : std::nullopt});
     plain_.compute(p.topology, without_, list_, state, without);
     for (std::size_t i = 0; i < state.size(); ++i) {
       with.force.add(i, -without.force[i]);
