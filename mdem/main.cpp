@@ -327,6 +327,9 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--known", v.threshold.known,
                 "trials.csv of an earlier search: its trials of the same scenes are not run again")
       ->check(CLI::ExistingFile);
+  c->add_option("--only", v.threshold.only, "Numbers from 1 or names of the points to search")->delimiter(',');
+  c->add_option("--slurm", v.threshold.slurm, "Only write a SLURM array with a job for each point to this file");
+  c->add_option("--snakemake", v.threshold.snakemake, "Only write a Snakemake file to this file");
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });
@@ -535,8 +538,12 @@ int main(int argc, char** argv) {
   std::vector<std::string> kinds;
   for (const SceneTemplate& t : scene_templates()) kinds.push_back(t.name);
   const std::vector<std::string> sets = shipped_sets();
-  add_describe(app, {"ropewalk", version, scene_key_help(), scenes_and_limits(),
-                     {{"--kind", kinds}, {"--parameters", sets}, {"compare", sets}}, {"calibrate", "validate"}});
+  add_describe(app, {"ropewalk",
+                     version,
+                     scene_key_help(),
+                     scenes_and_limits(),
+                     {{"--kind", kinds}, {"--parameters", sets}, {"compare", sets}},
+                     {"calibrate", "validate"}});
   try {
     refuse_control_characters(argv);
     verb_before_help(app, argc, argv);

@@ -219,8 +219,8 @@ std::string python_string(const std::string& text) { return nlohmann::json(text)
 }  // namespace
 
 // Each task of SLURM's array runs every so manieth point: by default SLURM knows no task above 1000 (MaxArraySize).
-std::string slurm_script(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
-                         std::size_t points, const std::string& options) {
+std::string slurm_script(const std::string& program, const std::string& verb, const std::string& sweep_file,
+                         const CampaignDirectory& dir, std::size_t points, const std::string& options) {
   constexpr std::size_t most_tasks = 1000;
   const std::size_t each = (points + most_tasks - 1) / most_tasks, tasks = (points + each - 1) / each;
   const std::string messages = absolute_quoted(dir.path + "/messages");
@@ -235,22 +235,31 @@ std::string slurm_script(const std::string& program, const std::string& sweep_fi
       "stopped.\n"
       "mkdir -p {} || exit\n"
       "exec >> {}/slurm-\"$SLURM_ARRAY_TASK_ID\".txt 2>&1\n"
-      "exec {} sweep {} --out {} --only {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet{}\n",
-      tasks, messages, messages, shell_quoted(program), absolute_quoted(sweep_file), absolute_quoted(dir.path),
+      "exec {} {} {} --out {} --only {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet{}\n",
+      tasks, messages, messages, shell_quoted(program), verb, absolute_quoted(sweep_file),
+      absolute_quoted(dir.path),
       each == 1 ? std::string("\"$SLURM_ARRAY_TASK_ID\"")
                 : fmt::format("\"$(seq -s , \"$SLURM_ARRAY_TASK_ID\" {} {})\"", tasks, points),
       options);
 }
 
-std::string snakemake_file(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
-                           const std::vector<SweepPoint>& points, const std::string& options) {
+std::string snakemake_file(const std::string& program, const std::string& verb, const std::string& sweep_file,
+                           const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
+                           const std::string& options) {
   for (const std::string& path : {program, dir.path, sweep_file})
     if (path.find_first_of("{}") != std::string::npos)
       throw InputError({path, 0, "--snakemake"}, "holds one of {}, which Snakemake reads as its own",
                        "choose a path without");
   std::string names;
   for (const SweepPoint& p : points) names += fmt::format("    {},\n", python_string(p.name));
-  const std::string reports = python_string(dir.path + "/points/{point}/report.html");
+  // What a point leaves when it has ended, what is made of all of them, and how.
+  const bool runs = verb == "sweep";
+  const std::string ends = python_string(dir.path + "/points/{point}/" + (runs ? "report.html" : "threshold.csv")),
+                    table = runs ? dir.table() : dir.path + "/thresholds.html",
+                    gather = runs ? fmt::format("{} gather {} -o {} --force", shell_quoted(program),
+                                                shell_quoted(dir.path), shell_quoted(table))
+                                  : fmt::format("{} threshold {} --out {} --quiet{}", shell_quoted(program),
+                                                shell_quoted(sweep_file), shell_quoted(dir.path), options);
   return fmt::format(
       "POINTS = [\n{}]\n\n"
       "rule table:\n"
@@ -261,12 +270,9 @@ std::string snakemake_file(const std::string& program, const std::string& sweep_
       "    input: {}\n"
       "    output: {}\n"
       "    shell: {}\n",
-      names, reports, python_string(dir.table()),
-      python_string(fmt::format("{} gather {} -o {} --force", shell_quoted(program), shell_quoted(dir.path),
-                                shell_quoted(dir.table()))),
-      python_string(sweep_file), reports,
-      python_string(fmt::format("{} sweep {} --out {} --only {{wildcards.point}} --quiet{}", shell_quoted(program),
-                                shell_quoted(sweep_file), shell_quoted(dir.path), options)));
+      names, ends, python_string(table), python_string(gather), python_string(sweep_file), ends,
+      python_string(fmt::format("{} {} {} --out {} --only {{wildcards.point}} --quiet{}", shell_quoted(program),
+                                verb, shell_quoted(sweep_file), shell_quoted(dir.path), options)));
 }
 
 }  // namespace ropewalk

@@ -63,10 +63,12 @@ struct GatherOptions {
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
 
-// For clusters: `program` runs each point, by its number from 1 or its name, with further options of `sweep`.
-std::string slurm_script(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
-                         std::size_t points, const std::string& options);
-std::string snakemake_file(const std::string& program, const std::string& sweep_file, const CampaignDirectory& dir,
-                           const std::vector<SweepPoint>& points, const std::string& options);
+// For clusters: `program` runs each point, by its number from 1 or its name. `verb` is "sweep" or "threshold", with
+// these further options.
+std::string slurm_script(const std::string& program, const std::string& verb, const std::string& sweep_file,
+                         const CampaignDirectory& dir, std::size_t points, const std::string& options);
+std::string snakemake_file(const std::string& program, const std::string& verb, const std::string& sweep_file,
+                           const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
+                           const std::string& options);
 
 }  // namespace ropewalk

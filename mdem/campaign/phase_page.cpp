@@ -7,6 +7,7 @@
 #include <map>
 
 #include "campaign/threshold.hpp"
+#include "io/base64.hpp"
 #include "io/csv_reader.hpp"
 #include "report/page.hpp"
 #include "report/scatter.hpp"
@@ -129,7 +130,8 @@ std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points
   return text;
 }
 
-std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points) {
+std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points,
+                       const std::vector<StatePicture>& states) {
   const ThresholdQuestion& q = *sweep.threshold;
   Figures figures;
   std::string html = page_head("Thresholds") +
@@ -189,6 +191,15 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
                 law_words(by_bisection(some)),
                 has_values(foreseen) ? "; by theory it " + law_words(foreseen) : std::string()))) +
             "</figure>\n";
+  }
+  if (!states.empty()) {
+    html += heading("States") +
+            paragraph(
+                "The last state of the runs next to each threshold. Each run has a report of its own in the "
+                "directory of its point.");
+    for (const StatePicture& s : states)
+      html += "<figure><img alt=\"" + escape_markup(s.words) + "\" src=\"data:image/svg+xml;base64," +
+              base64(s.svg) + "\">" + figures.caption(escape_markup(s.words + ".")) + "</figure>\n";
   }
   return html + "</main>\n</body>\n</html>\n";
 }

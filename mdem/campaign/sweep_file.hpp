@@ -66,10 +66,10 @@ struct SweepPoint {
   std::string text;                 // its scene
   std::string start;                // name of the run that it goes on from; empty: none
   // Found out where its scene was checked:
-  std::vector<std::string> sets;  // files of the parameter sets
+  std::vector<std::string> sets;   // files of the parameter sets
   std::vector<std::string> files;  // that drives were read from
-  std::string state;              // file of the start; empty: the scene makes it
-  double work = 0;                // elements times ps, which the time of a run goes by; a guess for relaxations
+  std::string state;               // file of the start; empty: the scene makes it
+  double work = 0;                 // elements times ps, which the time of a run goes by; a guess for relaxations
 };
 
 // What is found out about the points; each takes more time than the one before.

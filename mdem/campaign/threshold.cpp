@@ -162,6 +162,7 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   const double constant_from = ramp ? ramp->ramp_time() : 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
+    if (name == "threshold.csv") continue;
     const RunDirectory run{entry.path().string()};
     refuse_strange(run.path, true);
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
@@ -227,11 +228,14 @@ TrialTable read_trials(const std::string& path) {
       throw InputError({path, 1, ""}, fmt::format("has no column {}", needed),
                        "it is another table, or an earlier version wrote it: take it away");
   const auto column = [&](const char* name) {
-    return [&csv, name, at = place(name), count = names.size()] { return at < count ? csv.number(at, name) : unknown; };
+    return [&csv, name, at = place(name), count = names.size()] {
+      return at < count ? csv.number(at, name) : unknown;
+    };
   };
   const auto value = column("value"), passed = column("passed"), at_ps = column("at_ps"),
              rate = column("rate_per_ps"), rate_error = column("rate_error_per_ps"), turn = column("turn_deg");
-  const std::size_t shape = place("shape"), hash = place("scene_xxh64"), keys = std::min(place("seed"), place("value"));
+  const std::size_t shape = place("shape"), hash = place("scene_xxh64"),
+                    keys = std::min(place("seed"), place("value"));
   const auto cells_of_keys = [&] {
     std::string text;
     for (std::size_t k = 0; k < keys; ++k) text += csv_cell(std::string(csv.cells()[k])) + ",";

@@ -113,7 +113,8 @@ PhasePoint point_in_theory(const Sweep& sweep, const SweepPoint& point);
 
 // Columns of trials.csv behind those of the keys that vary.
 std::vector<OutputColumn> trial_columns();
-// The cells of one row before those: of each key that varies, but the seed. `of_keys`: a text for each key of the sweep.
+// The cells of one row before those: of each key that varies, but the seed. `of_keys`: a text for each key of the
+// sweep.
 std::string key_cells(const Sweep& sweep, const std::vector<std::string>& of_keys);
 
 // A table of trials, read by the names of its columns: earlier versions had fewer of them.
@@ -126,6 +127,11 @@ TrialTable read_trials(const std::string& path);
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
 std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points);
-std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points);
+// The last state of a run beside a threshold, as SVG.
+struct StatePicture {
+  std::string words, svg;
+};
+std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points,
+                       const std::vector<StatePicture>& states);
 
 }  // namespace ropewalk

@@ -9,11 +9,13 @@
 #include <unordered_map>
 
 #include "campaign/point_runs.hpp"
+#include "campaign/sweep_runs.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
+#include "run/pages/run_plate.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -27,9 +29,12 @@ double rounded(double value) { return leading_number(fmt::format("{:.3g}", value
 
 }  // namespace
 
-ThresholdSearch::ThresholdSearch(Sweep sweep, CampaignDirectory dir)
-    : sweep_(std::move(sweep)), dir_(std::move(dir)), points_(points_of(sweep_)) {
-  for (const SweepPoint& p : points_)
+ThresholdSearch::ThresholdSearch(Sweep sweep, CampaignDirectory dir, const std::vector<std::string>& only)
+    : sweep_(std::move(sweep)),
+      dir_(std::move(dir)),
+      points_(points_of(sweep_)),
+      chosen_(chosen_points(points_, only)) {
+  for (const SweepPoint& p : chosen_)
     for (const double value : {sweep_.threshold->from, sweep_.threshold->to}) scene_at(p, value);
 }
 
@@ -117,17 +122,26 @@ void ThresholdSearch::go(int jobs, const std::function<void(const SweepPoint&, b
   const auto write_now_and_then = [&] {
     const double begin = steady_seconds();
     if (begin < next) return;
-    write();
+    write(false);
     next = begin + 20 * seconds_since(begin);
   };
-  for (const SweepPoint& p : points_)
+  for (const SweepPoint& p : chosen_)
     tasks.push_back({[this, &p] { return in_a_process(dir_.messages(p.name), false, [&] { return bisect(p); }); },
                      [&, this](int status) {
+                       const bool well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+                       if (well) write_line_of(p);
                        write_now_and_then();
-                       ended(p, WIFEXITED(status) && WEXITSTATUS(status) == 0);
+                       ended(p, well);
                      }});
   run_processes(tasks, jobs, &stop_signal);
-  write();  // the trials of points that were stopped count as well
+  write(chosen_.size() == points_.size());  // the trials of points that were stopped count as well
+}
+
+// All of its trials may be known, so that it has no directory.
+void ThresholdSearch::write_line_of(const SweepPoint& p) const {
+  const RunDirectory point = dir_.point(p.name);
+  fs::create_directories(point.path);
+  write_file_atomically(point.file("threshold.csv"), thresholds_csv(sweep_, phase_points(dir_, sweep_, {p}, known_)));
 }
 
 // 0 where the run ended.
@@ -192,12 +206,37 @@ std::string ThresholdSearch::words_of(const SweepPoint& p) const {
   return fmt::format("{}: {:.4g} to {:.4g}{}", p.name, t.below, t.above, remarks.empty() ? "" : "; " + remarks);
 }
 
+// For each point with a threshold the runs below and above it, where they are in the directory.
+std::vector<StatePicture> ThresholdSearch::states() const {
+  std::vector<StatePicture> all;
+  for (const SweepPoint& p : points_) {
+    const Threshold t = threshold_of(dir_, sweep_, p, {});
+    if (t.outside) continue;
+    for (const double value : {t.below, t.above}) {
+      const auto trial =
+          std::find_if(t.trials.begin(), t.trials.end(), [&](const Trial& x) { return x.value == value; });
+      const RunDirectory run = trial_directory(dir_, sweep_, p, value);
+      if (trial == t.trials.end() || !fs::exists(run.frames())) continue;
+      const double last = read_log(run.log()).back()["time_ps"];
+      PlateOptions options;
+      options.at = {last};
+      options.highest = 140;
+      all.push_back(
+          {fmt::format("{}, {:g}: {}, after {:.4g} ps", p.name, value,
+                       trial->shape.empty() ? (trial->passed ? "passed" : "did not pass") : trial->shape, last),
+           run_plate(run, options)});
+    }
+  }
+  return all;
+}
+
 // The tables and the page of what is known so far.
-void ThresholdSearch::write() const {
+void ThresholdSearch::write(bool with_pictures) const {
   const std::vector<PhasePoint> points = phase_points(dir_, sweep_, points_, known_);
   write_file_atomically(dir_.path + "/thresholds.csv", thresholds_csv(sweep_, points));
   write_file_atomically(dir_.trials(), trials_csv(sweep_, points));
-  write_file_atomically(dir_.path + "/thresholds.html", phase_page(sweep_, points));
+  write_file_atomically(dir_.path + "/thresholds.html",
+                        phase_page(sweep_, points, with_pictures ? states() : std::vector<StatePicture>()));
 }
 
 }  // namespace ropewalk

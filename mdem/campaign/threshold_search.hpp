@@ -11,8 +11,9 @@ namespace ropewalk {
 
 class ThresholdSearch {
  public:
-  // Reads the scenes at both ends of the range. Throws InputError for a key or value that is wrong.
-  ThresholdSearch(Sweep sweep, CampaignDirectory dir);
+  // Reads the scenes at both ends of the range. Throws InputError for a key or value that is wrong. `only`: numbers
+  // from 1 or names of the points that go() searches; empty: all.
+  ThresholdSearch(Sweep sweep, CampaignDirectory dir, const std::vector<std::string>& only = {});
 
   // Makes the directory. Throws InputError where it holds runs or trials of other scenes, unless `force` is set.
   void begin(bool force);
@@ -23,7 +24,8 @@ class ThresholdSearch {
   // from time to time, and at the end. Ends early by io/stop_signals.hpp.
   void go(int jobs, const std::function<void(const SweepPoint& point, bool well)>& ended);
 
-  std::size_t size() const { return points_.size(); }
+  std::size_t size() const { return chosen_.size(); }
+  const std::vector<SweepPoint>& points() const { return points_; }
   std::vector<PhasePoint> results() const { return phase_points(dir_, sweep_, points_, known_); }
   // The verdict on a point, in words.
   std::string words_of(const SweepPoint& point) const;
@@ -34,11 +36,13 @@ class ThresholdSearch {
   int try_at(const SweepPoint& point, double value) const;
   int walk_from(double value, const SweepPoint& point) const;
   int bisect(const SweepPoint& point) const;
-  void write() const;
+  void write_line_of(const SweepPoint& point) const;
+  void write(bool with_pictures) const;
+  std::vector<StatePicture> states() const;
 
   Sweep sweep_;
   CampaignDirectory dir_;
-  std::vector<SweepPoint> points_;
+  std::vector<SweepPoint> points_, chosen_;
   KnownTrials known_;
   DirectoryLock lock_;
 };

@@ -93,7 +93,7 @@ struct RestArguments {
   std::string out;                  // empty: runs/NAME-rest
   std::optional<double> viscosity;  // eV ps/nm^2
   double tolerance = 0.02;          // of the geometric twist, within which both sides agree
-  int jobs = 0;                         // 0: one for each core
+  int jobs = 0;                     // 0: one for each core
   bool force = false;
   bool json = false;
   bool quiet = false;
@@ -140,9 +140,11 @@ int sweep_command(const SweepArguments& arguments);
 
 struct ThresholdArguments {
   std::string file;
-  std::string out;    // empty: FILE without .toml
-  std::string known;  // trials.csv of an earlier search
-  int jobs = 0;       // points at a time; 0: one for each core
+  std::string out;                // empty: FILE without .toml
+  std::string known;              // trials.csv of an earlier search
+  std::vector<std::string> only;  // numbers from 1 or names of points; empty: all
+  std::string slurm, snakemake;   // write this file and run nothing
+  int jobs = 0;                   // points at a time; 0: one for each core
   bool force = false;
   bool quiet = false;
 };

@@ -5,17 +5,15 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "io/log.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
-#include "report/plate.hpp"
-#include "run/pages/run_views.hpp"
+#include "run/pages/run_plate.hpp"
 
 namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t usual_states = 4;
 
 std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& groups) {
   std::vector<std::vector<std::string>> out;
@@ -51,27 +49,14 @@ int picture_command(const PictureArguments& a) {
   if (format != ".svg" && format != ".pdf" && format != ".png")
     throw InputError({a.out, 0, "-o"}, "is no .svg, .pdf or .png", "end the name in one of them");
   refuse_existing(a.out, "-o", a.force);
-  const RunDirectory dir{a.dir};
-  Scene scene = read_run_scene(dir);
-  const Prepared prepared = prepare(scene);
-  const Observer observer = make_observer(scene, prepared);
-  PlateInput in;
-  in.tube_radius = prepared.topology.largest_radius();
-  in.shells = observer.shells;
-  in.log = read_log(dir.log());
-  in.curves = curves_of(a.curves);
-  in.width = a.width;
-  for (const StoredFrame& frame : frames_at(dir, prepared.topology, a.at, usual_states)) {
-    const RopeObservation o = observe(observer, scene, prepared.topology, frame.state);
-    const double beta = o.beta / units::degree;
-    in.views.push_back(view_of(prepared.topology, frame, beta));
-    if (a.sections && !o.middle.points.empty())
-      in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
-  }
-  if (in.sections.size() != in.views.size()) in.sections.clear();
-  in.camera =
-      camera_from(a.from, in.views, in.tube_radius, a.width - 20 - (in.sections.empty() ? 0 : 164), a.highest);
-  const std::string svg = plate_svg(in);
+  PlateOptions options;
+  options.at = a.at;
+  options.from = a.from;
+  options.sections = a.sections;
+  options.curves = curves_of(a.curves);
+  options.width = a.width;
+  options.highest = a.highest;
+  const std::string svg = run_plate({a.dir}, options);
   if (format == ".svg")
     write_file_atomically(a.out, svg);
   else

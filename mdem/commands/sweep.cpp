@@ -9,8 +9,8 @@
 
 #include "campaign/point_runs.hpp"
 #include "campaign/sweep_runs.hpp"
+#include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
-#include "commands/siblings.hpp"
 #include "commands/sweep_progress.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
@@ -43,14 +43,6 @@ int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<
   fmt::print("{} points, about {} of one core, {} on {} cores{}\n", runs, duration_text(total),
              duration_text(total / std::min<double>(jobs, static_cast<double>(runs))), jobs,
              sweep.branch_axes.empty() ? "" : "; less what the shared starts save");
-  return 0;
-}
-
-int write_script(const std::string& path, const char* option, bool force, const std::string& text,
-                 const std::string& how_to_run) {
-  refuse_existing(path, option, force);
-  write_file_atomically(path, text);
-  fmt::print("{} written: {}\n", path, how_to_run);
   return 0;
 }
 
@@ -94,24 +86,19 @@ int sweep_command(const SweepArguments& a) {
     throw InputError({a.file, 0, "threshold"}, "asks for critical values", "run it with `ropewalk threshold`");
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
   // A job of an array looks at its own point alone; who writes an array reads all scenes and builds some.
-  const bool script = !a.slurm.empty() || !a.snakemake.empty();
-  const std::vector<SweepPoint> all = points_of(sweep, script ? PointsAs::read : PointsAs::names);
+  const ClusterScripts scripts{a.slurm, a.snakemake};
+  const std::vector<SweepPoint> all = points_of(sweep, scripts.any() ? PointsAs::read : PointsAs::names);
   std::vector<SweepPoint> points = chosen_points(all, a.only);
-  const std::size_t apart = script ? std::max<std::size_t>(1, points.size() / most_built) : 1;
+  const std::size_t apart = scripts.any() ? std::max<std::size_t>(1, points.size() / most_built) : 1;
   for (std::size_t k = 0; k < points.size(); k += apart) complete(sweep, points[k]);
   if (a.only.empty())
     if (const std::string why = why_replicates_are_equal(sweep, points); !why.empty()) tell("note: " + why);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   if (a.dry_run) return dry_run(sweep, dir, points, jobs);
-  const std::string program = find_program("", "ropewalk");
-  const std::string options =
-      (a.on_limit == "warn" ? "" : " --on-limit " + a.on_limit) + (a.again ? " --again" : "");
-  if (!a.slurm.empty())
-    return write_script(a.slurm, "--slurm", a.force, slurm_script(program, a.file, dir, all.size(), options),
-                        "sbatch " + a.slurm);
-  if (!a.snakemake.empty())
-    return write_script(a.snakemake, "--snakemake", a.force, snakemake_file(program, a.file, dir, all, options),
-                        fmt::format("snakemake -s {} --cores {}", a.snakemake, jobs));
+  if (scripts.any())
+    return write_script(scripts, "sweep", a.file, dir, all,
+                        (a.on_limit == "warn" ? "" : " --on-limit " + a.on_limit) + (a.again ? " --again" : ""),
+                        jobs, a.force);
   const DirectoryLock lock = create_campaign(dir, sweep, points, a.force);
   listen_to_stop_signals();
   const SweepRuns runs(sweep, dir, points, on_limit_of(a.on_limit), jobs, a.again);

@@ -7,8 +7,10 @@
 
 #include "campaign/point_runs.hpp"
 #include "campaign/threshold_search.hpp"
+#include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "io/plain_text.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/tell.hpp"
@@ -59,14 +61,19 @@ int threshold_command(const ThresholdArguments& a) {
   if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
     tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
-  ThresholdSearch search(std::move(sweep), dir);
+  const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
+  ThresholdSearch search(std::move(sweep), dir, a.only);
+  if (const ClusterScripts scripts{a.slurm, a.snakemake}; scripts.any())
+    return write_script(scripts, "threshold", a.file, dir, search.points(),
+                        a.known.empty() ? "" : " --known " + shell_quoted(fs::absolute(a.known).string()), jobs,
+                        a.force);
   search.begin(a.force);
   if (!a.known.empty()) take_known(search, a.known);
   listen_to_stop_signals();
   const double began = steady_seconds();
   std::size_t done = 0;
   std::vector<std::string> failed;
-  search.go(a.jobs > 0 ? a.jobs : omp_get_num_procs(), [&](const SweepPoint& p, bool well) {
+  search.go(jobs, [&](const SweepPoint& p, bool well) {
     ++done;
     if (!well) failed.push_back(p.name);
     if (!a.quiet)
@@ -74,7 +81,7 @@ int threshold_command(const ThresholdArguments& a) {
                              duration_text(steady_seconds() - began), search.words_of(p)));
   });
   if (stop_signal) return tell_stop();
-  print_results(dir, search.results());
+  if (a.only.empty()) print_results(dir, search.results());
   for (const std::string& name : failed) tell_not_ended(dir, name);
   return failed.empty() ? 0 : 3;
 }

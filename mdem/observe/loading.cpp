@@ -81,6 +81,18 @@ double within(const Topology& topology, const std::vector<int>& end) {
   return 0.5 * (each - 1) * topology.type_of_element(end.front()).element_length;
 }
 
+// nm, from elements to their images above.
+double period_of(const Topology& topology, const State& state) {
+  double sum = 0;
+  int images = 0;
+  for (int e = 0; e < topology.elements(); ++e)
+    if (const int image = topology.image_above(e); image >= 0) {
+      sum += state.position.z[static_cast<std::size_t>(image)] - state.position.z[static_cast<std::size_t>(e)];
+      ++images;
+    }
+  return sum / images;
+}
+
 double twist_of(const Topology& topology, const State& state, int tube) {
   double sum = 0;
   int bonds = 0;
@@ -167,8 +179,12 @@ double tube_pressure(const Topology& topology, const State& state, const Contact
             to = from + count;
   const double reach2 = law.cutoff() * law.cutoff();
   double virial = 0;
+  // Tubes in line with it do not touch its side.
+  int first = tube, last = tube;
+  while (!topology.begins_strand(first)) --first;
+  while (!topology.ends_strand(last)) ++last;
   for (int other = 0; other < topology.tubes(); ++other) {
-    if (other == tube) continue;
+    if (first <= other && other <= last) continue;
     const TypePair types{topology.tube_type[tube], topology.tube_type[other]};
     for (int k = from; k < to; ++k) {
       const auto i = static_cast<std::size_t>(topology.tube_begin[tube] + k);
@@ -231,6 +247,10 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   const double free = reference.ends_apart - within(topology, reference.ends[lower_end]) -
                       within(topology, reference.ends[upper_end]);
   out.strain = free > 0 ? (out.ends_apart - reference.ends_apart) / free : 0;
+  if (topology.images > 0) {
+    out.ends_apart = period_of(topology, state);
+    out.strain = out.ends_apart / topology.period - 1;
+  }
   for (int t = 0; t < topology.tubes(); ++t) {
     const double tension = mean_of_middle(tensions(topology, state, t));
     out.least_tension = t == 0 ? tension : std::min(out.least_tension, tension);
@@ -244,8 +264,10 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   out.core_pressure = none;
   if (reference.law && !reference.core.empty() && reference.cell > 0) {
     out.core_pressure = 0;
-    for (const int t : reference.core)
-      out.core_pressure += tube_pressure(strands, state, *reference.law, reference.cell, t) /
+    // Of the tubes in the middle of these strands.
+    for (const int s : reference.core)
+      out.core_pressure += tube_pressure(topology, state, *reference.law, reference.cell,
+                                         topology.tube_of(strands.tube_begin[s] + strands.length_of(s) / 2)) /
                            static_cast<double>(reference.core.size());
   }
   return out;

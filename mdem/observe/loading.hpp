@@ -32,7 +32,7 @@ LoadingReference loading_reference(const Topology& topology, const State& start,
 LoadingReference of_parts(LoadingReference reference, const Topology& whole, const Topology& parts);
 
 struct Loading {
-  double ends_apart = 0;     // nm, between the centres of the ends
+  double ends_apart = 0;     // nm, between the centres of the ends; of a slice: its period
   double strain = 0;         // of that distance
   double least_tension = 0;  // eV/nm, of a tube, mean over its middle third
   double most_tension = 0;   // eV/nm, likewise

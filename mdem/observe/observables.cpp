@@ -118,7 +118,7 @@ std::vector<Observable>& table() {
          return first < 0 ? (m.account.potential.vdw - first) / -first : 0.0;
        }},
 
-      {"ends_apart_nm", "nm", "distance between the centres of both ends", Group::shape,
+      {"ends_apart_nm", "nm", "distance between the centres of both ends; of a periodic slice: its period", Group::shape,
        [](const M& m) { return m.loading.ends_apart; }},
       {"ends_strain", "", "the change of that distance since the start, over the free length between the ends",
        Group::shape, [](const M& m) { return m.loading.strain; }},

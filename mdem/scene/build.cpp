@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "model/counter_random.hpp"
 #include "model/error.hpp"
@@ -20,10 +21,28 @@ namespace {
 
 constexpr double viscosity_reach = 1.5;  // spacings
 
+// For each tube the first one that is a piece of the same tube: in a slice a tube and its images are one.
+std::vector<int> one_tube(const Topology& topology) {
+  std::vector<int> first(static_cast<std::size_t>(topology.tubes()));
+  std::iota(first.begin(), first.end(), 0);
+  const auto root = [&](int t) {
+    while (first[static_cast<std::size_t>(t)] != t) t = first[static_cast<std::size_t>(t)];
+    return t;
+  };
+  for (int e = 0; topology.images > 0 && e < topology.elements(); ++e) {
+    const int a = root(topology.tube_of(e)), b = root(topology.tube_of(topology.original_of(e)));
+    first[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  for (int t = 0; t < topology.tubes(); ++t) first[static_cast<std::size_t>(t)] = root(t);
+  return first;
+}
+
 // Each tube by itself: a share is met in the mean.
 void draw_tube_types(const Scene& scene, Topology& topology) {
+  const std::vector<int> one = one_tube(topology);
   for (int t = 0; t < topology.tubes(); ++t) {
-    double left = unit_interval(philox({static_cast<std::uint32_t>(t), 0, 0, 0}, scene.start.seed)[0]);
+    const auto number = static_cast<std::uint32_t>(one[static_cast<std::size_t>(t)]);
+    double left = unit_interval(philox({number, 0, 0, 0}, scene.start.seed)[0]);
     std::size_t type = 0;
     while (type + 1 < scene.type_shares.size() && left > scene.type_shares[type]) left -= scene.type_shares[type++];
     topology.tube_type[static_cast<std::size_t>(t)] = static_cast<int>(type);
@@ -42,6 +61,15 @@ void set_tube_types(const Scene& scene, Topology& topology) {
                      strands < tubes ? "write one for each strand or for each tube" : "write one for each tube");
   if (typed == tubes) {
     topology.tube_type = scene.tube_types;
+    const std::vector<int> one = one_tube(topology);
+    for (std::size_t t = 0; t < one.size(); ++t)
+      if (topology.tube_type[t] != topology.tube_type[static_cast<std::size_t>(one[t])])
+        throw InputError(
+            {scene.path, 0, "tube_types"},
+            fmt::format("gives tubes {} and {} different types, and they are pieces of one tube of the "
+                        "slice",
+                        one[t], t),
+            "write one for each strand, or give both the same type");
     return;
   }
   for (int t = 0, strand = -1; t < tubes; ++t) {
@@ -142,6 +170,11 @@ BuiltScene build(Scene& scene) {
       scene.source->typed_spacing() > 0 ? scene.source->typed_spacing() : parallel_spacing(scene, out.law.get());
   scene.damping.contact.inner = out.spacing;
   scene.damping.contact.outer = viscosity_reach * out.spacing;
+  if (scene.has_ends(Drive::Ends::endless)) {
+    const double reach = interaction_of(scene, out.law).cutoff() + scene.source->slides();
+    for (const auto& drive : scene.drives)
+      out.topology.images = std::max(out.topology.images, drive->images(reach / scene.element_length));
+  }
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
   if (const std::string memory = beyond_memory(out.topology.elements()); !memory.empty())

@@ -79,8 +79,12 @@ class Drive {
   virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
 
   virtual Ends ends() const { return Ends::free; }
-  // Whether the drive acts on single elements. A scene with shorter elements then keeps the centres of these elements.
-  // The default is true for a drive that clamps or loads ends, and for a drive with a key that lists elements.
+  // The number of elements at each end of a strand that are images (Topology::images), where the contact reaches
+  // over so many elements.
+  virtual int images(double /*reach*/) const { return 0; }
+  // Whether the drive acts on single elements. A scene with shorter elements then keeps the centres of these
+  // elements. The default is true for a drive that clamps or loads ends, and for a drive with a key that lists
+  // elements.
   virtual bool holds_elements() const;
   // The number of elements at this end of a tube that the drive holds as one rigid piece.
   virtual int held(End /*end*/, int /*tube*/) const { return 0; }

@@ -26,6 +26,8 @@ class Source {
 
   // The spacing of neighbouring parallel tubes, nm; 0: where two of them bind best.
   virtual double typed_spacing() const { return 0; }
+  // nm, by which strands may slide along one another in a slice (Topology::images).
+  virtual double slides() const { return 0; }
   // Whether all tubes are straight and parallel to z.
   virtual bool is_parallel() const { return false; }
   // The file that the elements are read from; empty: no file.

@@ -315,6 +315,7 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.strand_begin.clear();
   topology.rope_begin.clear();
   topology.strand_holes = 0;
+  topology.images = 0;
   state = StateReader(path, topology).read();
 }
 

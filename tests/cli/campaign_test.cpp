@@ -1,9 +1,8 @@
 // Campaigns: interrupted, resumed, gathered and compared.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/support.hpp"
 
@@ -281,7 +280,8 @@ TEST_F(Campaign, ThresholdIsThatOfTheFormula) {
   // Rows of one scene that differ in what came of it.
   const std::string header = lines(slurp(dir / "s/trials.csv")).front();
   std::string row = lines(slurp(dir / "s/trials.csv")).back();
-  const auto columns = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(",passed,") + 1), ',');
+  const auto columns =
+      std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(",passed,") + 1), ',');
   std::size_t at = 0;
   for (int k = 0; k < columns; ++k) at = row.find(',', at) + 1;
   row[at] = row[at] == '1' ? '0' : '1';
@@ -337,7 +337,46 @@ TEST_F(Campaign, ThresholdOfAHelixBeginsAtTheory) {
   int helices = 0;
   for (const std::string& trial : trials) helices += trial.find(",helix,") != std::string::npos ? 1 : 0;
   EXPECT_GE(helices, 1);
-  EXPECT_NE(slurp(dir / "s" / "thresholds.html").find("theory, in this time"), std::string::npos);
+  const std::string page = slurp(dir / "s" / "thresholds.html");
+  EXPECT_NE(page.find("theory, in this time"), std::string::npos);
+  // The states on both sides of the threshold, in pictures.
+  EXPECT_NE(page.find(": helix, after"), std::string::npos);
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("data:image/svg"); at != std::string::npos;
+       at = page.find("data:image/svg", at + 1))
+    ++pictures;
+  EXPECT_EQ(pictures, 2u);
+}
+
+// One point after another, as tasks of a cluster search them; the page of all of them takes no run more.
+TEST_F(Campaign, ThresholdsPointByPoint) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 13.56\n"
+       "[damping]\nbond_damping_per_ps = 4\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 0.3\nhold_ps = 3\n"
+       "[run]\nlog_every_ps = 1\n");
+  sweep_file(
+      "[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 2\nto = 20\ncolumn = \"rotation_deg\"\n"
+      "above = 20\naccuracy = 0.1\n[vary]\nrope.length_nm = [13.56, 20.34]\n");
+  ASSERT_EQ(run("threshold s.toml --slurm job.sh").code, 0);
+  EXPECT_NE(slurp(dir / "job.sh").find(" threshold "), std::string::npos);
+  EXPECT_FALSE(fs::exists(dir / "s"));
+  spit(dir / "a b.csv", "");
+  ASSERT_EQ(run("threshold s.toml --snakemake Snakefile --known \"a b.csv\"").code, 0);
+  EXPECT_NE(slurp(dir / "Snakefile").find("threshold.csv"), std::string::npos);
+  EXPECT_NE(slurp(dir / "Snakefile").find("a b.csv'"), std::string::npos) << slurp(dir / "Snakefile");
+  EXPECT_EQ(run("threshold s.toml --only 3").code, 2);
+  ASSERT_EQ(run("threshold s.toml --only 2").code, 0);
+  const fs::path first = dir / "s/points/length_nm-13.56", second = dir / "s/points/length_nm-20.34";
+  EXPECT_FALSE(fs::exists(first / "threshold.csv"));
+  ASSERT_EQ(lines(slurp(second / "threshold.csv")).size(), 2u);
+  ASSERT_EQ(run("threshold s.toml --only length_nm-13.56").code, 0);
+  EXPECT_EQ(lines(slurp(first / "threshold.csv"))[1].rfind("13.56,1,", 0), 0u);
+  const std::string trials = slurp(dir / "s/trials.csv"), table = slurp(dir / "s/thresholds.csv");
+  const auto when = fs::last_write_time(second / "moment_nN_nm-20/log.csv");
+  ASSERT_EQ(run("threshold s.toml").code, 0);
+  EXPECT_EQ(slurp(dir / "s/trials.csv"), trials);
+  EXPECT_EQ(slurp(dir / "s/thresholds.csv"), table);
+  EXPECT_EQ(fs::last_write_time(second / "moment_nN_nm-20/log.csv"), when);
 }
 
 TEST_F(Campaign, ReplicatesThatAreOneRunAreSaid) {

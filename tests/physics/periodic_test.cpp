@@ -12,8 +12,10 @@
 #include "run/run_directory.hpp"
 #include "scene/finer.hpp"
 #include "scene/random.hpp"
+#include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
+#include "sim/forces/terms/links.hpp"
 
 namespace ropewalk {
 namespace {
@@ -31,15 +33,16 @@ struct Slice {
   Scene scene;
   Prepared p;
   const PeriodicLoad* load;
-  int images, own;
+  int images, own;  // elements, of a strand
 
   explicit Slice(const std::string& text)
       : scene(scene_of_text(text, "slice.toml")), p(prepare(scene)), load(p.loads.of<PeriodicLoad>().front()) {
     images = load->images;
-    own = p.topology.length_of(0) - 2 * images;
+    own = strand() - 2 * images;
   }
+  int strand() const { return p.topology.elements() / p.topology.strands(); }
   bool is_image(int element) const {
-    const int k = element - p.topology.tube_begin[p.topology.tube_of(element)];
+    const int k = element % strand();
     return k < images || k >= images + own;
   }
 };
@@ -54,6 +57,116 @@ void shake(const Slice& slice, State& s, double by, double speed) {
     s.angular_velocity.set(i, speed * any());
   }
   slice.load->place(slice.p.topology, s);
+}
+
+// A yarn: tubes of two kinds and several lengths that end inside of the slice, and links.
+std::string yarn_text(const std::string& more, const std::string& of_slice = "") {
+  return "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
+         "type_shares = [0.5, 0.5]\n[rope]\ntubes = 7\nlength_nm = 60\ntube_length_nm = 17\n"
+         "tube_length_deviation_nm = 4\n[contact]\nprecision = \"double\"\n[run]\nduration_ps = 1\n"
+         "[periodic]\ntwist_deg_per_nm = [[0, 1.5]]\n" +
+         of_slice + more;
+}
+
+const char* const linked_and_weak =
+    "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 2\n[[links]]\nper_nm = 0.3\nreach_nm = 1\n"
+    "stiffness_nN_per_nm = 100\nbreaks_at_nN = 8\n[failure]\nstrain = 0.015\n";
+
+// `periods` of a slice one behind the other, with the images at both ends, and the same links in each.
+struct Longer {
+  Topology topology;
+  State state;
+  std::vector<LinkPlace> links;
+
+  Longer(const Slice& slice, int periods, const std::vector<LinkPlace>& links_of_slice) {
+    const Topology& of = slice.p.topology;
+    const int n = slice.own, g = slice.images, long_strand = periods * n + 2 * g;
+    const double turn = slice.load->schedule().value(0) * slice.load->period(),
+                 length = slice.load->length(of, slice.p.state);
+    topology.types = of.types;
+    topology.strand_begin = {0};
+    topology.ends_meet = of.ends_meet;
+    state = State(static_cast<std::size_t>(of.strands() * long_strand));
+    const auto in_slice = [&](int k) { return k < g + n ? k : g + (k - g) % n; };
+    for (int s = 0; s < of.strands(); ++s) {
+      const int begin = s * slice.strand();
+      int length_of_tube = 0;
+      for (int k = 0; k < long_strand; ++k) {
+        const int from = begin + in_slice(k), period = k < g + n ? 0 : (k - g) / n;
+        if (k > 0 && of.tube_begin[of.tube_of(from)] == from && from != begin) {
+          topology.add_tube(length_of_tube, of.tube_type[of.tube_of(from) - 1]);
+          length_of_tube = 0;
+        }
+        ++length_of_tube;
+        const auto to = static_cast<std::size_t>(s * long_strand + k), i = static_cast<std::size_t>(from);
+        const Quaternion r(Eigen::AngleAxisd(period * turn, Vector3::UnitZ()));
+        state.position.set(to, r * Vector3(slice.p.state.position[i]) + Vector3(0, 0, period * length));
+        state.orientation.set(to, (r * Quaternion(slice.p.state.orientation[i])).normalized());
+      }
+      topology.add_tube(length_of_tube, of.tube_type[of.tube_of(begin + in_slice(long_strand - 1))]);
+      topology.strand_begin.push_back(topology.tubes());
+    }
+    // A link may lead into the next period.
+    const auto place = [&](int element, int period) {
+      return element / slice.strand() * long_strand + element % slice.strand() + period * n;
+    };
+    for (const LinkPlace& link : links_of_slice)
+      for (int period = -1; period <= periods; ++period) {
+        LinkPlace copy = link;
+        copy.a = place(link.a, period);
+        copy.b = place(link.b, period);
+        const auto there = [&](int e, int element) {
+          return e >= 0 && e / long_strand == element / slice.strand() && e < of.strands() * long_strand;
+        };
+        if (there(copy.a, link.a) && there(copy.b, link.b)) links.push_back(copy);
+      }
+  }
+};
+
+// Tubes of a yarn, their ends, and their links.
+TEST(PeriodicSlice, ForcesOfAYarnAreThoseOfAnEndlessOne) {
+  Slice slice(yarn_text(""));
+  // A strand that has slid, so that its links lead into the next period.
+  for (int e = 0; e < slice.strand(); ++e)
+    slice.p.state.position.add(static_cast<std::size_t>(e), Vector3(0, 0, 0.5));
+  shake(slice, slice.p.state, 0.01, 0);
+  const Topology& of = slice.p.topology;
+  ASSERT_GT(of.tubes(), 2 * of.strands());
+  LinkLaw law;
+  law.stretch = 600;
+  law.shear = 300;
+  law.density = 2;
+  law.reach = 1;
+  law.rest = 0.3;
+  const std::vector<LinkPlace> links = placed_links(law, of, slice.p.state, {});
+  Interaction linked = slice.p.interaction;
+  add_term(link_term(law, links, of), linked);
+  const Simulation s(of, linked, slice.p.loads, slice.p.state, slice.p.time_step);
+  const int periods = 3;
+  const Longer longer(slice, periods, links);
+  ASSERT_GT(longer.links.size(), 2 * links.size());
+  Interaction as_long = interaction_of(slice.scene, slice.p.interaction.law);
+  add_end_contacts(slice.scene, longer.topology, as_long);
+  add_term(link_term(law, longer.links, longer.topology), as_long);
+  const Simulation all(longer.topology, as_long, {}, longer.state, slice.p.time_step);
+  const int long_strand = longer.topology.elements() / longer.topology.strands();
+  double largest = 0;
+  int of_links = 0;
+  for (int strand = 0; strand < of.strands(); ++strand)
+    for (int k = slice.images; k < slice.images + slice.own; ++k) {
+      const auto a = static_cast<std::size_t>(strand * slice.strand() + k),
+                 b = static_cast<std::size_t>(strand * long_strand + k + slice.own);
+      const double turn = slice.load->schedule().value(0) * slice.load->period();
+      const Eigen::Matrix3d r = Eigen::AngleAxisd(turn, Vector3::UnitZ()).toRotationMatrix();
+      const Vector3 f = r * s.forces().force[a], h = all.forces().force[b], m = r * s.forces().torque[a],
+                    o = all.forces().torque[b];
+      largest = std::max(largest, h.norm());
+      EXPECT_LT((f - h).norm(), 1e-8) << strand << ' ' << k;
+      EXPECT_LT((m - o).norm(), 1e-8) << strand << ' ' << k;
+    }
+  for (const LinkPlace& link : links) of_links += of.is_image(link.a) || of.is_image(link.b);
+  EXPECT_GT(largest, 1);
+  EXPECT_GT(of_links, 0);
 }
 
 // Three periods and their images, copied out by hand.
@@ -134,6 +247,151 @@ TEST(PeriodicSlice, KeepsEnergyAndMomentum) {
   expect_conserved(2, 5e-4);
 }
 
+// Its length free, then drawn out until links and tubes break.
+TEST(PeriodicSlice, AYarnKeepsMomentumAndEnergyWhileItBreaks) {
+  Slice slice(yarn_text(linked_and_weak, "tension_nN = [[0, 0]]\nstrain = [[20, 0], [40, 0.15]]\n"));
+  Simulation s = start(slice.scene, slice.p);
+  const auto momentum = [&] {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // p_z, and the sum of |p_z|
+    for (int e = 0; e < slice.p.topology.elements(); ++e) {
+      if (slice.is_image(e)) continue;
+      const double p = slice.p.topology.type_of_element(e).mass * s.state().velocity.z[e];
+      sum += Eigen::Vector2d(p, std::fabs(p));
+    }
+    return sum;
+  };
+  const double first = s.total_energy();
+  const auto balance = [&] { return s.total_energy() - first - s.account().supplied(); };
+  const auto go_to = [&](double time) { s.steps(std::lround((time - s.state().time) / slice.p.time_step), true); };
+  go_to(10);
+  const double settled = balance();
+  go_to(38);
+  const Eigen::Vector2d p = momentum();
+  EXPECT_LT(std::fabs(p[0]), 1e-9 * p[1]);
+  EXPECT_NEAR(balance(), settled, 0.01 * (s.dissipated() + s.work()));
+  long links = 0, bonds = 0;
+  for (const TermEvent& e : s.term_events()) {
+    links += e.what == std::string("link broke");
+    bonds += e.what == std::string("tube broke");
+  }
+  EXPECT_GT(links, 10);
+  EXPECT_GT(bonds, 0);
+  // Images have broken where their originals have.
+  const Topology now = s.tubes_now();
+  const auto begins = [&](int e) { return now.tube_begin[static_cast<std::size_t>(now.tube_of(e))] == e; };
+  for (int e = 0; e < now.elements(); ++e)
+    EXPECT_TRUE(e % slice.strand() == 0 || begins(e) == begins(now.original_of(e))) << e;
+  EXPECT_EQ(now.images, slice.images);
+}
+
+// Thin tubes in line with wide ones are pressed as thin ones: their neighbours come nearer.
+TEST(PeriodicSlice, PressureInAYarnIsThatOfItsTubes) {
+  Slice slice(yarn_text("[damping]\ncontact_viscosity_eV_ps_per_nm2 = 10\n"));
+  const Observer observer = make_observer(slice.scene, slice.p);
+  Simulation s = start(slice.scene, slice.p);
+  s.steps(std::lround(40 / slice.p.time_step), true);
+  const LogRow row = log_row(observer, slice.scene, slice.p.topology, s.state(), EnergyAccount());
+  EXPECT_LT(std::fabs(row["core_pressure_GPa"]), 3);
+  for (const double pressure : tube_pressures(slice.p.topology, s.state(), observer.loading))
+    EXPECT_LT(std::fabs(pressure / units::nN_nm), 10);
+}
+
+// Friction of the images is that of their originals, while strands slide past one another by several elements.
+TEST(PeriodicSlice, FrictionKeepsTheMomentum) {
+  for (const char* slip : {"dry", "corrugation"}) {
+    Slice slice(
+        yarn_text(fmt::format("[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\n[[friction]]\n"
+                              "strength_pN_per_nm = 30\nspin_strength_pN_per_nm = 10\nend_strength_pN = 20\n"
+                              "drag_eV_ps_per_nm3 = 0.1\nslip = \"{}\"\n",
+                              slip)));
+    for (int e = 0; e < slice.strand(); ++e)
+      slice.p.state.velocity.set(static_cast<std::size_t>(e), Vector3(0, 0, 0.1));
+    slice.load->place(slice.p.topology, slice.p.state);
+    Simulation s = start(slice.scene, slice.p);
+    const auto momentum = [&](int strands) {
+      double sum = 0;
+      for (int e = 0; e < strands * slice.strand(); ++e)
+        if (!slice.is_image(e)) sum += slice.p.topology.type_of_element(e).mass * s.state().velocity.z[e];
+      return sum;
+    };
+    const int all = slice.p.topology.strands();
+    const double first = momentum(1), whole = momentum(all);
+    ASSERT_DOUBLE_EQ(first, whole);
+    s.steps(std::lround(30 / slice.p.time_step), true);
+    EXPECT_LT(momentum(1), 0.3 * first) << slip;
+    EXPECT_NEAR(momentum(all), whole, 1e-9 * whole);
+  }
+}
+
+// What has broken is known to a run that goes on, images included.
+TEST(PeriodicSlice, AYarnGoesOnFromACheckpoint) {
+  Slice slice(yarn_text(linked_and_weak, "tension_nN = [[0, 0]]\nstrain = [[5, 0], [20, 0.08]]\n"));
+  Simulation one = start(slice.scene, slice.p), two = start(slice.scene, slice.p);
+  const long half = std::lround(14 / slice.p.time_step);
+  one.steps(half);
+  two.restore(one.serialise());
+  one.steps(half / 4);
+  two.steps(half / 4);
+  EXPECT_EQ(one.serialise(), two.serialise());
+  EXPECT_GT(one.term_events().size(), 150u);
+}
+
+// Seven tubes under a tension, then drawn out by a strain: Hooke's law, by both.
+TEST(PeriodicSlice, StrainFollowsTensionAndTensionStrain) {
+  const double pull = 20;  // nN
+  Slice slice(slice_text(7, 20,
+                         fmt::format("[bond]\nlaw = \"harmonic\"\n[periodic]\ntwist_deg_per_nm = [[0, 0]]\n"
+                                     "tension_nN = [[0, 0], [60, 0], [100, {}]]\n"
+                                     "strain = [[180, 0], [220, 0.004], [270, 0.004]]\n"
+                                     "[damping]\nbond_damping_per_ps = 2\n",
+                                     pull)));
+  Simulation s = start(slice.scene, slice.p);
+  const auto go_to = [&](double time) { s.steps(std::lround((time - s.state().time) / slice.p.time_step), true); };
+  const auto tension_after = [&](double time) {
+    go_to(time);
+    s.read_gauges();
+    go_to(time + 10);
+    return s.read_gauges()[upper_end].force.z() / units::nN_nm;
+  };
+  const double stiff = 7 * slice.scene.parameters().bond.stretch / units::nN_nm;  // nN
+  const auto length = [&] { return slice.load->length(slice.p.topology, s.state()); };
+  const double period = slice.load->period();
+  // At rest the contact draws it together a little.
+  EXPECT_NEAR(tension_after(48), 0, 0.01 * pull);
+  const double free = length();
+  EXPECT_NEAR(tension_after(169.5), pull, 1e-3 * pull);
+  const double pulled = length();
+  EXPECT_NEAR((pulled - free) / period, pull / stiff, 0.03 * pull / stiff);
+  EXPECT_NEAR(tension_after(255), pull + 0.004 * stiff, 0.01 * (pull + 0.004 * stiff));
+  EXPECT_NEAR(length(), pulled + 0.004 * period, 3e-4);
+}
+
+TEST(PeriodicSlice, RefusesTubesThatMeetTheirImages) {
+  try {
+    const Slice slice(yarn_text("", ""));
+    Scene scene =
+        scene_of_text(std::string(slice.scene.text).replace(slice.scene.text.find("= 17"), 4, "= 55"), "yarn.toml");
+    prepare(scene);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("a tube would go on beside its own image"));
+  }
+}
+
+// Strands that slide past their images end the run.
+TEST(PeriodicSlice, SaysWhereImagesReachNoFarther) {
+  Slice slice(
+      yarn_text("[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\n[[load]]\nkind = \"force\"\nelements = "
+                "[-1]\ntubes = [1]\nforce_nN = [0, 0, 3]\n"));
+  Simulation s = start(slice.scene, slice.p);
+  try {
+    s.steps(std::lround(100 / slice.p.time_step));
+    FAIL() << s.state().time;
+  } catch (const NumericalError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("take more images: periodic.images = "));
+  }
+}
+
 // Images are led to where they will be while the twist grows.
 TEST(PeriodicSlice, ImagesFollowATwistThatGrows) {
   Slice slice(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0], [20, 2], [30, 2]]\n"));
@@ -203,8 +461,8 @@ TEST(PeriodicSlice, IsTheMiddleOfALongRope) {
   EXPECT_NEAR(slice["twist_eV"] / 15, rope["twist_eV"] / (elements - 1), 5e-3 * slice["twist_eV"] / 15);
 }
 
-// The tubes of a slice are endless. Bonds and watched limits take the collapse of an endless tube, whatever the length of
-// the slice.
+// The tubes of a slice are endless. Bonds and watched limits take the collapse of an endless tube, whatever the
+// length of the slice.
 TEST(PeriodicSlice, CollapsesAsAnEndlessTubeDoes) {
   for (const int elements : {9, 16, 44}) {  // 12, 22 and 60 nm
     const Slice slice(
@@ -242,6 +500,8 @@ TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
                               "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[twist]\nmoment_nN_nm = "
                               "5\nrate_nN_nm_per_ps = 1\nhold_ps = 1\n")),
               HasSubstr("does not go with [twist]"));
+  EXPECT_THAT(said(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\nstrain = [[0, 0.1], [9, 0.2]]\n")),
+              HasSubstr("begin with 0"));
   const auto pulled = [&](const char* elements) {
     return said(
         slice_text(7, 20,

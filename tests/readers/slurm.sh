@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The job array of `ropewalk sweep --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
+# The job arrays of `ropewalk sweep --slurm` and `threshold --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
 # not on the PATH. Argument: ropewalk.
 set -euo pipefail
 command -v slurmctld slurmd sbatch >/dev/null || { echo "slurm: skipped, apt-get install slurm-wlm" >&2; exit 77; }
@@ -71,6 +71,18 @@ patiently is_done || fail "the array does not end"
 "$ropewalk" gather study --columns time_ps > table.csv || fail "the campaign is none"
 [ "$(grep -c ',finished,' table.csv)" = 2 ] || fail "not all points are done: $(cat table.csv)"
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
+
+# A search for thresholds, one point a task; the same command then makes the page of all.
+{ printf 'format = "ropewalk-sweep-1"\nscene = "rope.toml"\n[threshold]\nkey = "twist.moment_nN_nm"\nfrom = 1\nto = 9\n'
+  printf 'column = "moment_nN_nm"\nabove = 2\naccuracy = 0.2\n[vary]\nrope.length_nm = [14, 21]\n'; } > scenes/turn.toml
+"$ropewalk" threshold scenes/turn.toml --out turn --slurm turn.sh >/dev/null
+(cd elsewhere && sbatch ../turn.sh >/dev/null) || fail "the array of a search is refused"
+patiently is_done || fail "the array of a search does not end"
+[ "$(ls turn/points/*/threshold.csv | wc -l)" = 2 ] || fail "not both points are searched: $(cat turn/messages/*.txt)"
+runs=$(ls -d turn/points/*/moment* | wc -l)
+"$ropewalk" threshold scenes/turn.toml --out turn --quiet > said || fail "the search is none"
+[ "$(ls -d turn/points/*/moment* | wc -l)" = "$runs" ] || fail "trials are run again"
+grep -q 'by bisection [0-9]' said || fail "no threshold is found: $(cat said)"
 
 # More points than SLURM has tasks by default.
 "$ropewalk" sweep scenes/many.toml --slurm many.sh >/dev/null

@@ -419,7 +419,7 @@ const SceneTemplate& template_named(const std::string& name) {
 
 TEST(Templates, AllAreReadAndBuilt) {
   const Folder folder;
-  EXPECT_EQ(scene_templates().size(), 21u);
+  EXPECT_EQ(scene_templates().size(), 22u);
   for (const SceneTemplate& t : scene_templates()) {
     SCOPED_TRACE(t.name + "\n" + t.text);
     Scene scene;

@@ -26,6 +26,8 @@ class RopeSource : public Source {
   Sizes sizes(double element_length) const override;
   void place(const Scene&, double spacing_of_tubes, Random&, Topology&, State&) const override;
   double typed_spacing() const override { return spacing; }
+  // Parts of tubes slide as a whole; and helices are longer than the axis, so that long tubes shrink along it.
+  double slides() const override { return tube_length > 0 ? 5 + 0.1 * tube_length : 0; }
   bool is_parallel() const override { return true; }
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
   std::string not_for_lammps() const override { return tube_length > 0 ? "rope.tube_length_nm" : ""; }
@@ -37,6 +39,13 @@ class RopeSource : public Source {
   void place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
   // Numbers of elements from the lower end of a strand at which one tube ends and the next begins.
   std::vector<int> cuts(int strand_shift, double element_length, double gap_here, Random& random) const;
+  double drawn_length(double element_length, Random& random) const;  // nm, of a tube
+  // The gap of a scene: the typed one, or where ends rest. Refuses one into which ends would be driven.
+  double least_gap(const Scene& scene) const;
+  // A slice of an endless rope (Topology::images): tubes end at the same elements in each period.
+  void place_slice(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
+  std::vector<int> cuts_of_period(int strand_shift, int own, int tubes_in_line, int images, double element_length,
+                                  Random& random) const;
 };
 
 // Refuses a packing without a place for each tube, tubes of fewer than three elements, and more elements than fit.

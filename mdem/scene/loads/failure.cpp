@@ -54,7 +54,7 @@ class TubeFailure : public ForceTerm {
     limit_.resize(static_cast<std::size_t>(scene.elements()), never_breaks);
     for (int t = 0; t < scene.tubes(); ++t)
       for (int i = scene.tube_begin[t]; i + 1 < scene.tube_begin[t + 1]; ++i)
-        limit_[static_cast<std::size_t>(i)] = law.strain_of(i);
+        limit_[static_cast<std::size_t>(i)] = law.strain_of(scene.original_of(i));
     broken_.assign(limit_.size(), 0);
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeFailure>(*this); }
@@ -65,8 +65,10 @@ class TubeFailure : public ForceTerm {
     Happened now;
     for (int t = 0; t < topology_.tubes(); ++t)
       for (int i = topology_.tube_begin[t]; i + 1 < topology_.tube_begin[t + 1]; ++i)
-        if (breaks(topology_.type_of(t), state, i))
-          now.lost += break_at(topology_.type_of(t), state, i), ++now.events;
+        if (!topology_.is_image(i) && breaks(topology_.type_of(t), state, i)) {
+          now.lost += break_at(topology_.type_of(t), state, i);
+          ++now.events;
+        }
     return now;
   }
 
@@ -84,7 +86,7 @@ class TubeFailure : public ForceTerm {
           !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
         throw std::runtime_error("the memory of broken tubes is damaged");
       all_.push_back({r.element, x[0], Vector3(x[1], x[2], x[3])});
-      broken_[static_cast<std::size_t>(r.element)] = 1;
+      for (const int e : with_images(r.element)) broken_[static_cast<std::size_t>(e)] = 1;
     }
   }
   std::vector<TermEvent> events() const override {
@@ -108,15 +110,24 @@ class TubeFailure : public ForceTerm {
   double break_at(const TubeType& type, const State& state, int element) {
     const auto i = static_cast<std::size_t>(element);
     const Vector3 d = state.position[i + 1] - state.position[i];
-    broken_[i] = 1;
+    const std::vector<int> bonds = with_images(element);
+    for (const int e : bonds) broken_[static_cast<std::size_t>(e)] = 1;
     // In the order of the elements, as a memory comes back.
     const BrokenBond one{element, state.time, state.position[i] + 0.5 * d};
     all_.insert(std::upper_bound(all_.begin(), all_.end(), one,
                                  [](const BrokenBond& x, const BrokenBond& y) { return x.element < y.element; }),
                 one);
-    return bond_energy<double>(type.bond, type.element_length, d, frame_of(state.orientation[i]),
-                               frame_of(state.orientation[i + 1]))
-        .total();
+    return static_cast<double>(bonds.size()) * bond_energy<double>(type.bond, type.element_length, d,
+                                                                   frame_of(state.orientation[i]),
+                                                                   frame_of(state.orientation[i + 1]))
+                                                   .total();
+  }
+  // The bond behind this element, and its images in a slice.
+  std::vector<int> with_images(int element) const {
+    std::vector<int> all = {element};
+    for (const int image : {topology_.image_below(element), topology_.image_above(element)})
+      if (image >= 0 && std::isfinite(limit_[static_cast<std::size_t>(image)])) all.push_back(image);
+    return all;
   }
 
   FailureLaw law_;
@@ -138,11 +149,6 @@ class FailureDrive : public Drive {
         "tubes break where they are strained by {:.4g}{}{}", law.strain,
         law.deviation > 0 ? fmt::format(" ± {:.3g}", law.deviation) : "",
         law.moment < never_breaks ? fmt::format(" or bent with {:.4g} nN nm", law.moment / units::nN_nm) : "");
-  }
-  void refuse(const TomlTable& top, const Scene& scene) const override {
-    if (scene.has_ends(Ends::endless))
-      throw top.error("failure", "does not go with [periodic]: a slice has no place where a tube breaks",
-                      "take one of the two away");
   }
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     add_term(std::make_shared<TubeFailure>(law, topology), interaction);

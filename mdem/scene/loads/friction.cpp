@@ -52,9 +52,6 @@ class FrictionDrive : public Drive {
     return all;
   }
   void refuse(const TomlTable& top, const Scene& scene) const override {
-    if (scene.has_ends(Ends::endless))
-      throw top.error("friction", "does not go with [periodic]: the images of the slice have no friction",
-                      "take one of the two away");
     if (scene.contact.law == "none")
       throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"",
                       "take one of the two away");

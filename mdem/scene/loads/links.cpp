@@ -28,9 +28,9 @@ class LinksDrive : public Drive {
   SceneTable table() const override;
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene& scene) const override {
-    if (scene.has_ends(Ends::endless))
-      throw top.error("links", "does not go with [periodic]: the images of the slice have no links",
-                      "take one of the two away");
+    if (scene.has_ends(Ends::endless) && !between.empty())
+      throw top.error("links", "names elements in between, and those of a [periodic] slice have images",
+                      "place the links with per_nm or at_ends");
     if (scene.contact.law == "none")
       throw top.error("links", "join tubes in contact, and contact.law is \"none\"", "take one of the two away");
   }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "model/error.hpp"
@@ -18,6 +20,22 @@ namespace {
 void read_twist(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   load.twist = points_in_time(t, "twist_deg_per_nm", Bounds::range(-45, 45));
   for (Schedule::Point& p : load.twist) p.value *= units::degree;
+}
+
+void read_strain(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  if (t.has("strain")) load.strain = points_in_time(t, "strain", Bounds::range(-0.5, 1));
+}
+
+void read_tension(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  if (!t.has("tension_nN")) return;
+  load.tension = points_in_time(t, "tension_nN", Bounds::range(-1e6, 1e6));
+  for (Schedule::Point& p : load.tension) p.value *= units::nN_nm;
+}
+
+void check_slice(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  if (load.strain.empty() || load.strain.front().value == 0) return;
+  throw t.error("strain", fmt::format("begins with {:.4g}", load.strain.front().value),
+                "begin with 0: it counts from the length at that time on");
 }
 
 Eigen::Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitZ()).toRotationMatrix(); }
@@ -40,11 +58,20 @@ const KeyTable<PeriodicLoad>& periodic_table() {
       "the interior of a long rope: a slice that goes on at both ends as its own image; without this table, a "
       "whole rope",
       {Key::integer(
-           "images", 1, 1000, &PeriodicLoad::images, otherwise("4", "as many as the contact reaches"),
+           "images", 1, 1000, &PeriodicLoad::images,
+           otherwise("4", "as many as the contact reaches; where tubes end inside, 5 nm and a tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
-                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)},
-      {}};
+                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
+       Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
+                   "by which the slice is drawn out from the first of these times on, [[ps, strain], ...]",
+                   read_strain),
+       Key::custom(
+           "tension_nN", "nN", otherwise("[[0, 0]]", "the slice keeps its length"),
+           "of the rope until the first time of strain, in time; the slice then takes the length that it asks "
+           "for",
+           read_tension)},
+      check_slice};
   return table;
 }
 
@@ -64,8 +91,17 @@ DriveKind periodic_drive() {
 SceneTable PeriodicDrive::table() const { return periodic_table().doc(); }
 
 std::string PeriodicDrive::words() const {
-  return fmt::format("periodic: a slice of an endless rope, twisted to {:.4g} deg/nm in {:.4g} ps",
-                     load.twist.back().value / units::degree, lasts());
+  std::string text = fmt::format("periodic: a slice of an endless rope, twisted to {:.4g} deg/nm in {:.4g} ps",
+                                 load.twist.back().value / units::degree, load.twist.back().time);
+  if (!load.tension.empty()) {
+    Schedule pull(load.tension);
+    text += fmt::format(", its length free under {:.4g} nN{}", pull.last() / units::nN_nm,
+                        load.strain.empty() ? "" : fmt::format(" until {:.4g} ps", load.strain.front().time));
+  }
+  if (!load.strain.empty())
+    text += fmt::format(", drawn out to a strain of {:.4g} in {:.4g} ps", load.strain.back().value,
+                        load.strain.back().time - load.strain.front().time);
+  return text;
 }
 
 void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
@@ -101,7 +137,10 @@ void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, c
           {scene.path, 0, "load.elements"},
           fmt::format("element {} of tube {} is an image of the slice, and a load on it has no effect",
                       e - topology.tube_begin[tube], tube),
-          fmt::format("name elements from {} to {}", slice.images, topology.length_of(tube) - slice.images - 1));
+          topology.strands() < topology.tubes()
+              ? fmt::format("the first and the last {} elements of each strand are images", slice.images)
+              : fmt::format("name elements from {} to {}", slice.images,
+                            topology.length_of(tube) - slice.images - 1));
     }
   }
 }
@@ -109,13 +148,13 @@ void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, c
 void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndConstraints& loads,
                          std::vector<std::string>& warnings) const {
   const PeriodicLoad& slice = *loads.of<PeriodicLoad>().front();
-  const int all = topology.length_of(0), own = all - 2 * slice.images;
-  warnings.push_back(
-      fmt::format("This is a slice of an endless rope: of the {} elements of a tube {} are its own, {:.4g} nm, and "
-                  "{} at each end "
-                  "are images. Energies in eV count the images too; energies per mass, torque and tension are "
-                  "those of the rope.",
-                  all, own, slice.period(), slice.images));
+  const int all = topology.elements() / topology.strands(), own = all - 2 * slice.images;
+  warnings.push_back(fmt::format(
+      "This is a slice of an endless rope: of the {} elements of a {} {} are its own, {:.4g} nm, and "
+      "{} at each end "
+      "are images. Energies in eV count the images too; energies per mass, torque and tension are "
+      "those of the rope.",
+      all, topology.strands() < topology.tubes() ? "strand" : "tube", own, slice.period(), slice.images));
 }
 
 // --- the load --------------------------------------------------------------------------------------------------
@@ -127,54 +166,122 @@ std::optional<LoadEffect> PeriodicLoad::effect() const {
   return out;
 }
 
+double PeriodicLoad::lasts() const {
+  double last = twist.back().time;
+  for (const auto* points : {&strain, &tension})
+    if (!points->empty()) last = std::max(last, points->back().time);
+  return last;
+}
+
+int PeriodicDrive::images(double reach) const {
+  return load.images > 0 ? load.images : std::max(1, static_cast<int>(std::ceil(reach)));
+}
+
 PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, const std::string& path) const {
-  const auto refuse = [&](const std::string& what, const std::string& remedy) -> InputError {
-    return InputError({path, 0, "periodic"}, what, remedy);
-  };
   PeriodicLoad out = *this;
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;
   const int needed = std::max(1, static_cast<int>(std::ceil(reach / a)));
-  if (out.images == 0) out.images = needed;
+  out.images = topology.images;
+  ROPEWALK_EXPECTS(out.images > 0 && topology.elements() % topology.strands() == 0);
   if (out.images < needed)
     throw InputError({path, 0, "periodic.images"},
-                     fmt::format("is {}, and the contact reaches {:.3g} nm", images, reach),
-                     fmt::format("take at least {}, or leave the key away", needed));
-  const int all = topology.length_of(0);
-  for (int t = 0; t < topology.tubes(); ++t)
-    if (topology.length_of(t) != all || topology.type_of(t).element_length != a)
-      throw refuse("needs tubes of one length", "take a [rope]");
-  const int own = all - 2 * out.images;
-  if (own < out.images)
-    throw refuse(fmt::format("leaves {} elements between {} images at each end", std::max(0, own), out.images),
-                 fmt::format("make the tubes at least {:.4g} nm long", 3 * out.images * a));
-  out.period_ = own * a;
-  // Twice what a torsional wave needs along the slice, so that the interior follows.
-  const double wave = std::sqrt(type.bond.twist / (type.inertia / a));
-  out.schedule_ = Schedule(twist, 2 * all * a / wave);
-  for (int t = 0; t < topology.tubes(); ++t)
+                     fmt::format("is {}, and the contact reaches {:.3g} nm", out.images, reach),
+                     fmt::format("take at least {}{}", needed, images > 0 ? ", or leave the key away" : ""));
+  const int all = topology.elements() / topology.strands();
+  out.period_ = topology.period;
+  out.reach_ = reach;
+  // Twice what a wave needs along the slice, so that the interior follows.
+  const double twist_wave = std::sqrt(type.bond.twist / (type.inertia / a)),
+               stretch_wave = std::sqrt(type.bond.stretch / (type.mass / a));
+  out.schedule_ = Schedule(twist, 2 * all * a / twist_wave);
+  if (!strain.empty()) out.stretched_ = Schedule(strain, 2 * all * a / stretch_wave);
+  if (!tension.empty()) out.pulled_ = Schedule(tension);
+  for (int first = 0; first < topology.elements(); first += all)
     for (int k = 0; k < out.images; ++k) {
-      out.ends_[lower_end].push_back(topology.tube_begin[t] + k);
-      out.ends_[upper_end].push_back(topology.tube_begin[t + 1] - 1 - k);
+      out.ends_[lower_end].push_back(first + k);
+      out.ends_[upper_end].push_back(first + all - 1 - k);
     }
   out.elements = out.ends_[lower_end];
   out.elements.insert(out.elements.end(), out.ends_[upper_end].begin(), out.ends_[upper_end].end());
   return out;
 }
 
+PeriodicLoad::Length PeriodicLoad::measured(const Topology& topology, const State& s) const {
+  Length sum;
+  double mass = 0;
+  for_images(topology, [&](int image, int original, double sign) {
+    const auto i = static_cast<std::size_t>(image), o = static_cast<std::size_t>(original);
+    const double m = topology.type_of_element(image).mass;
+    sum.now += m * sign * (s.position.z[i] - s.position.z[o]);
+    sum.rate += m * sign * (s.velocity.z[i] - s.velocity.z[o]);
+    mass += m;
+  });
+  return {sum.now / mass, sum.rate / mass};
+}
+
+double PeriodicLoad::length(const Topology& topology, const State& s) const { return measured(topology, s).now; }
+
+// A length that no tension has moved is that of its schedule to the last digit.
+PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift,
+                                                const State& s) const {
+  const double then = time + drift, rate = period_ * stretched_.rate(time);
+  if (tension.empty()) return {period_ * (1 + stretched_.value(then)), rate};
+  const Length now = measured(topology, s);
+  if (is_free(time)) return {now.now + drift * now.rate, now.rate};
+  return {now.now + period_ * (stretched_.value(then) - stretched_.value(time)), rate};
+}
+
+void PeriodicLoad::add_forces(const State&, double time, std::vector<PointLoad>& out) const {
+  if (!is_free(time)) return;
+  const double each = pulled_.value(time) / static_cast<double>(ends_[upper_end].size());
+  for (const End end : {lower_end, upper_end})
+    for (const int e : ends_[end])
+      out.push_back({e, Vector3(0, 0, end == upper_end ? each : -each), Vector3::Zero()});
+}
+
+// Strands slide along one another. Their images must reach as far as the contact all the same, but for half an
+// element, at whose distance it is weak.
+void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
+  const int all = topology.elements() / topology.strands();
+  const double half = 0.5 * topology.type_of(0).element_length, far = std::numeric_limits<double>::max();
+  double lowest_own = far, highest_own = -far, images_from = -far, images_to = far;
+  int first = 0;
+  for (int e = 0; e < topology.elements(); e += all) {
+    const auto z = [&](int k) { return s.position.z[static_cast<std::size_t>(e + k)]; };
+    if (z(0) > images_from) first = e;
+    images_from = std::max(images_from, z(0));
+    images_to = std::min(images_to, z(all - 1));
+    lowest_own = std::min(lowest_own, z(images));
+    highest_own = std::max(highest_own, z(all - 1 - images));
+  }
+  const double missing = std::max(images_from + reach_ - lowest_own, highest_own + reach_ - images_to) - half;
+  if (missing <= 0) return;
+  throw NumericalError(
+      s.step, first,
+      fmt::format(
+          "the tubes of the slice have slid so far along one another that its images no longer reach as far as "
+          "the contact, by {:.3g} nm",
+          missing),
+      fmt::format("take more images: periodic.images = {}",
+                  // For slips of twice this size.
+                  2 * images + 1 - static_cast<int>(reach_ / topology.type_of(0).element_length)));
+}
+
 // So that the drift with these velocities leads to where the image will be.
-void PeriodicLoad::follow(int image, int original, double sign, double time, double drift, State& s) const {
+void PeriodicLoad::follow(int image, int original, double sign, double time, double drift, const Length& length,
+                          State& s) const {
   const auto i = static_cast<std::size_t>(image), o = static_cast<std::size_t>(original);
   const Vector3 v = s.velocity[o], w = s.angular_velocity[o], x = s.position[o];
   const double turned = sign * period_ * schedule_.value(time + drift);
   const Eigen::Matrix3d r = about_z(turned);
   if (drift <= 0) {
     const Vector3 spin(0, 0, sign * period_ * schedule_.rate(time));
-    s.velocity.set(i, r * v + spin.cross(r * x));
+    s.velocity.set(i, r * v + spin.cross(r * x) + Vector3(0, 0, sign * length.rate));
     s.angular_velocity.set(i, r * w + spin);
     return;
   }
-  const Vector3 then = r * (x + drift * v) + Vector3(0, 0, sign * period_);
+  const Vector3 then = r * (x + drift * v) + Vector3(0, 0, sign * length.now);
   s.velocity.set(i, (then - Vector3(s.position[i])) / drift);
   const Quaternion turned_then = Quaternion(r) * turn_by(drift * w) * s.orientation[o];
   s.angular_velocity.set(i, angle_of(turned_then * s.orientation[i].conjugate()) / drift);
@@ -182,18 +289,16 @@ void PeriodicLoad::follow(int image, int original, double sign, double time, dou
 
 template <class Act>
 void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const int begin = topology.tube_begin[t], own = topology.length_of(t) - 2 * images;
-    for (int k = 0; k < images; ++k) {
-      act(begin + k, begin + k + own, -1.0);
-      act(begin + images + own + k, begin + images + k, 1.0);
-    }
-  }
+  for (const End end : {lower_end, upper_end})
+    for (const int image : ends_[end]) act(image, topology.original_of(image), end == upper_end ? 1.0 : -1.0);
 }
 
 void PeriodicLoad::constrain(const Topology& topology, double time, double ahead, State& s) const {
-  for_images(topology,
-             [&](int image, int original, double sign) { follow(image, original, sign, time, 2 * ahead, s); });
+  check_reach(topology, s);
+  const Length length = length_after(topology, time, 2 * ahead, s);
+  for_images(topology, [&](int image, int original, double sign) {
+    follow(image, original, sign, time, 2 * ahead, length, s);
+  });
 }
 
 void PeriodicLoad::wind(State& s) const {
@@ -211,10 +316,12 @@ void PeriodicLoad::wind(State& s) const {
 }
 
 void PeriodicLoad::place(const Topology& topology, State& s) const {
+  // At the start, and wherever no tension has moved it.
+  const double length = period_ * (1 + stretched_.value(s.time));
   for_images(topology, [&](int image, int original, double sign) {
     const auto i = static_cast<std::size_t>(image), o = static_cast<std::size_t>(original);
     const Eigen::Matrix3d r = about_z(sign * period_ * schedule_.value(s.time));
-    s.position.set(i, r * Vector3(s.position[o]) + Vector3(0, 0, sign * period_));
+    s.position.set(i, r * Vector3(s.position[o]) + Vector3(0, 0, sign * length));
     s.orientation.set(i, (Quaternion(r) * Quaternion(s.orientation[o])).normalized());
   });
 }

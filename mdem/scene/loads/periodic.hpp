@@ -1,14 +1,21 @@
 // [periodic] the interior of a long rope: a slice that goes on at both ends as its own image.
 //
-// The first and the last elements of every tube are images. With the period L along z, the length of the elements
-// between them, and the twist per length tau, the image of the element at x one period higher is
+// The first and the last elements of every strand are images. With the period L along z, its length L0 at the
+// start, and the turn tau L0 in it, the image of the element at x one period higher is
 //
-//   x' = R(tau L) x + L e_z,   q' = R(tau L) q,   v' = R(tau L) v + tau' L e_z x R(tau L) x,   R about the z axis,
+//   x' = R(tau L0) x + L e_z,   q' = R(tau L0) q,   v' = R(tau L0) v + tau' L0 e_z x R(tau L0) x + L' e_z,
 //
-// and one period lower the inverse. So the slice is that of an endless rope that is twisted evenly, and that
-// repeats itself after L but for the turn. Images are elements as all others: forces on the elements between them
-// are those of the endless rope, as long as the images reach as far as the contact. What moves the images gives the
-// gauges: torque and tension of the rope.
+// R about the z axis, and one period lower the inverse. So the slice is that of an endless rope that is twisted and
+// strained evenly, and that repeats itself after L but for the turn. Images are elements as all others: forces on
+// the elements between them are those of the endless rope, as long as the images reach as far as the contact. What
+// moves the images gives the gauges: torque and tension of the rope.
+//
+// L is L0 (1 + strain), or follows a tension F until the first time of the strain: with the masses m of the images,
+// s = 1 for the upper ones and -1 for the lower ones, and the forces f on images and g on their originals,
+//
+//   L'' = sum s (f_z - g_z + s F/n) / sum m,   n the number of images at one end,
+//
+// that is, as a rope whose ends have the mass of the images. L and L' are kept in the images themselves.
 #pragma once
 
 #include <vector>
@@ -20,22 +27,28 @@ namespace ropewalk {
 
 class PeriodicLoad : public Load {
  public:
-  int images = 0;                      // elements at each end of a tube; 0: as the contact needs
-  std::vector<Schedule::Point> twist;  // rad/nm
+  int images = 0;                        // elements at each end of a tube; 0: as the contact needs
+  std::vector<Schedule::Point> twist;    // rad/nm
+  std::vector<Schedule::Point> strain;   // of the period; none: it stays
+  std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
 
-  // For the tubes of a scene. `reach` (nm): of the contact, between element centres. Throws InputError where tubes
-  // are not alike or too short for as many images.
+  // For the tubes of a slice (Topology::images). `reach` (nm): of the contact, between element centres. Throws
+  // InputError where the images do not reach as far.
   PeriodicLoad on_tubes(const Topology& topology, double reach, const std::string& path) const;
   // Winds straight tubes evenly about the z axis where the slice is twisted from the start.
   void wind(State&) const;
   // Puts the images where they belong.
   void place(const Topology&, State&) const;
-  double period() const { return period_; }  // nm
+  double period() const { return period_; }  // nm, L0
+  // nm, of a state whose images stand where they belong.
+  double length(const Topology&, const State&) const;
   const Schedule& schedule() const { return schedule_; }
+  double lasts() const;  // ps
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
+  void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
   std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }
   std::optional<LoadEffect> effect() const override;
   // The images.
@@ -52,11 +65,21 @@ class PeriodicLoad : public Load {
   // Calls act(image, original, sign of the period between them).
   template <class Act>
   void for_images(const Topology&, const Act& act) const;
-  void follow(int image, int original, double sign, double time, double drift, State&) const;
+  // L, and its change per time.
+  struct Length {
+    double now = 0, rate = 0;
+  };
+  Length measured(const Topology&, const State&) const;
+  // L at the end of a drift from `time` on, and L' at `time`.
+  Length length_after(const Topology&, double time, double drift, const State&) const;
+  bool is_free(double time) const { return !tension.empty() && (strain.empty() || time < strain.front().time); }
+  void check_reach(const Topology&, const State&) const;
+  void follow(int image, int original, double sign, double time, double drift, const Length& then, State&) const;
 
-  Schedule schedule_;  // of tau, smoothed
+  Schedule schedule_;            // of tau, smoothed
+  Schedule stretched_, pulled_;  // of strain, smoothed, and of tension
   EndElements ends_;
-  double period_ = 0;  // nm
+  double period_ = 0, reach_ = 0;  // nm
 };
 
 class PeriodicDrive : public Drive {
@@ -67,7 +90,8 @@ class PeriodicDrive : public Drive {
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   std::string needs_time() const override { return load.needs_time(); }
-  double lasts() const override { return load.twist.back().time; }
+  double lasts() const override { return load.lasts(); }
+  int images(double reach) const override;
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;

@@ -20,6 +20,43 @@ bool Topology::ends_strand(int tube) const {
   return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube + 1);
 }
 
+namespace {
+
+// An element in its strand of a slice.
+struct InSlice {
+  int place = 0, own = 0, images = 0;
+
+  InSlice(const Topology& topology, int element) {
+    const int strand = topology.elements() / topology.strands();
+    place = element % strand;
+    own = strand - 2 * topology.images;
+    images = topology.images;
+  }
+  bool is_own() const { return place >= images && place < images + own; }
+};
+
+}  // namespace
+
+int Topology::original_of(int element) const {
+  ROPEWALK_EXPECTS(element >= 0 && element < elements());
+  if (images == 0) return element;
+  const InSlice at(*this, element);
+  if (at.is_own()) return element;
+  return at.place < images ? element + at.own : element - at.own;
+}
+
+int Topology::image_above(int element) const {
+  if (images == 0) return -1;
+  const InSlice at(*this, element);
+  return at.is_own() && at.place < 2 * images ? element + at.own : -1;
+}
+
+int Topology::image_below(int element) const {
+  if (images == 0) return -1;
+  const InSlice at(*this, element);
+  return at.is_own() && at.place >= at.own ? element - at.own : -1;
+}
+
 std::pair<int, int> Topology::strands_of_rope(int rope) const {
   ROPEWALK_EXPECTS(rope >= 0 && rope < ropes());
   if (rope_begin.empty()) return {0, strands()};
@@ -31,6 +68,8 @@ Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   Topology cut;
   cut.types = topology.types;
   cut.strand_holes = topology.strand_holes;
+  cut.images = topology.images;
+  cut.period = topology.period;
   cut.rope_begin = topology.rope_begin;
   cut.strand_begin = {0};
   for (int t = 0; t < topology.tubes(); ++t) {
@@ -50,6 +89,8 @@ Topology strands_of(const Topology& topology) {
   Topology strands;
   strands.types = topology.types;
   strands.strand_holes = topology.strand_holes;
+  strands.images = topology.images;
+  strands.period = topology.period;
   strands.rope_begin = topology.rope_begin;
   for (int s = 0; s < topology.strands(); ++s) {
     const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),

@@ -127,6 +127,10 @@ struct Topology {
   // Ends of tubes that follow one another in a strand have a contact of their own (forces/terms/tube_ends.hpp):
   // near them elements of both tubes do not touch each other otherwise, like those of one tube.
   bool ends_meet = false;
+  // A slice of an endless rope: so many elements at each end of a strand are images of the elements one period away
+  // (scene/loads/periodic.hpp). All strands have as many elements. 0: no slice.
+  int images = 0;
+  double period = 0;  // nm, at the start
   // Ropes that are plied: the first strand of each, and the number of strands. Empty: all are one rope.
   std::vector<int> rope_begin;
   std::optional<PartOfScene> part;  // none: these elements are the scene
@@ -158,6 +162,11 @@ struct Topology {
   double largest_radius() const;
   double longest_element() const;
   int tube_of(int element) const;
+  // The element of which this one is the image, or itself; and its image one period higher or lower, or -1.
+  int original_of(int element) const;
+  int image_above(int element) const;
+  int image_below(int element) const;
+  bool is_image(int element) const { return original_of(element) != element; }
   bool owns(int element) const {
     ROPEWALK_EXPECTS(element >= 0 && element < elements());
     return !part || part->own[static_cast<std::size_t>(element)] != 0;

@@ -84,22 +84,22 @@ TEST(Cluster, FilesHoldNamesAsData) {
   const std::string odd = "it's $(touch pwned) `x` \"y\"";
   const SweepPoint point{"tubes-7", {}, "", "", {}, {}, "", 1};
   const std::string program = "/a b/ropewalk";
-  const std::string slurm = slurm_script(program, "/" + odd, {"/c d"}, 1000, " --again");
+  const std::string slurm = slurm_script(program, "sweep", "/" + odd, {"/c d"}, 1000, " --again");
   EXPECT_NE(slurm.find("#SBATCH --array=1-1000\n"), std::string::npos) << slurm;
   EXPECT_NE(slurm.find("exec '/a b/ropewalk' sweep " + shell_quoted("/" + odd) +
                        " --out '/c d' --only \"$SLURM_ARRAY_TASK_ID\" --jobs"),
             std::string::npos)
       << slurm;
   EXPECT_NE(slurm.find(" --quiet --again\n"), std::string::npos) << slurm;
-  const std::string many = slurm_script(program, "s.toml", {"d"}, 2001, "");
+  const std::string many = slurm_script(program, "sweep", "s.toml", {"d"}, 2001, "");
   EXPECT_NE(many.find("#SBATCH --array=1-667\n"), std::string::npos) << "three points a task: " << many;
   EXPECT_NE(many.find("--only \"$(seq -s , \"$SLURM_ARRAY_TASK_ID\" 667 2001)\""), std::string::npos) << many;
-  const std::string snakemake = snakemake_file(program, odd, {"a\"b"}, {point}, "");
+  const std::string snakemake = snakemake_file(program, "sweep", odd, {"a\"b"}, {point}, "");
   EXPECT_NE(snakemake.find("    \"tubes-7\",\n"), std::string::npos) << snakemake;
   EXPECT_NE(snakemake.find("input: \"it's $(touch pwned) `x` \\\"y\\\"\"\n"), std::string::npos) << snakemake;
   EXPECT_NE(snakemake.find("expand(\"a\\\"b/points/{point}/report.html\", point=POINTS)"), std::string::npos);
-  EXPECT_THROW(snakemake_file(program, "s{x}.toml", {"a"}, {point}, ""), InputError);
-  EXPECT_THROW(snakemake_file(program, "s.toml", {"a}"}, {point}, ""), InputError);
+  EXPECT_THROW(snakemake_file(program, "sweep", "s{x}.toml", {"a"}, {point}, ""), InputError);
+  EXPECT_THROW(snakemake_file(program, "sweep", "s.toml", {"a}"}, {point}, ""), InputError);
 }
 
 TEST(Failure, IsALineWithARemedy) {

@@ -93,6 +93,26 @@ bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
                                        topology.tube_type[static_cast<std::size_t>(tube_j)]);
 }
 
+// In a slice a link and its images are one: that of two own elements, or of an own one and an image above it.
+bool stands_for_images(const Topology& topology, int i, int j) {
+  const auto above = [&](int e) {
+    return topology.is_image(e) && topology.image_above(topology.original_of(e)) == e;
+  };
+  return topology.images == 0 || (!topology.is_image(i) && (!topology.is_image(j) || above(j))) ||
+         (!topology.is_image(j) && above(i));
+}
+
+// The same link one period higher where it joins an image below.
+void lift(const Topology& topology, LinkPlace& link) {
+  if (topology.images == 0 || stands_for_images(topology, link.a, link.b)) return;
+  const auto higher = [&](int e) {
+    return topology.is_image(e) ? topology.original_of(e) : topology.image_above(e);
+  };
+  link.a = higher(link.a);
+  link.b = higher(link.b);
+  ROPEWALK_ENSURES(link.a >= 0 && link.b >= 0);
+}
+
 // Chosen for a pair of elements with this mean number per length.
 template <class Add>
 void choose(const LinkLaw& law, const Topology& topology, const State& state, int i, int j, double per_length,
@@ -124,6 +144,7 @@ void choose_at_end(const LinkLaw& law, const Topology& topology, const State& st
     const Axis b = axis_at(topology, state, j);
     faces(a, b, s, law.reach, facing);
     links.push_back(place_of(law, state, i, j, a, b, s, facing));
+    lift(topology, links.back());
   }
 }
 
@@ -134,6 +155,12 @@ struct Link {
   LinkPlace at;
   double formed = 0, broke = never;
   Vector3 formed_at, broke_at;
+};
+
+// A link that acts between these elements: as it was placed, or as its image.
+struct ActingLink {
+  std::size_t link = 0;
+  int a = 0, b = 0;
 };
 
 struct LinkAction {
@@ -159,19 +186,19 @@ class LinkTerm : public ForceTerm {
   void prepare(const ListedScene& scene) override {
     ROPEWALK_EXPECTS(!scene.topology.part);
     if (!placed_) {
-      for (Link& link : links_) link.formed_at = action_of(link, scene.state).place;
+      for (Link& link : links_) link.formed_at = action_of(link.at, link.at.a, link.at.b, scene.state).place;
       placed_ = true;
     }
     index();
   }
 
   void gather(const State& state) override {
-    actions_.resize(links_.size());
-    const auto n = static_cast<std::ptrdiff_t>(links_.size());
-#pragma omp parallel for schedule(static) if (links_.size() > parallel_from)
+    actions_.resize(acting_.size());
+    const auto n = static_cast<std::ptrdiff_t>(acting_.size());
+#pragma omp parallel for schedule(static) if (acting_.size() > parallel_from)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (links_[k].broke == never) actions_[k] = action_of(links_[k], state);
+      actions_[k] = action_of(links_[acting_[k].link].at, acting_[k].a, acting_[k].b, state);
     }
   }
 
@@ -181,19 +208,24 @@ class LinkTerm : public ForceTerm {
     Happened all{-given_, 0, begun_};
     given_ = 0;
     begun_ = 0;
-    for (std::size_t k = 0; k < links_.size(); ++k) {
-      Link& link = links_[k];
-      if (link.broke != never) continue;
-      LinkAction& now = actions_[k];
+    // Whether a link breaks follows from itself and not from its image, which stands behind it.
+    for (std::size_t k = 0; k < acting_.size(); ++k) {
+      Link& link = links_[acting_[k].link];
+      const LinkAction& now = actions_[k];
+      const bool is_image = acting_[k].a != link.at.a;
       const bool breaks =
           (law_.strength > 0 && now.pull > law_.strength) || (law_.toughness > 0 && now.energy > law_.toughness);
-      if (!breaks) continue;
+      if (is_image ? link.broke == never : !breaks) continue;
+      all.lost += now.energy;
+      if (is_image) continue;
       link.broke = state.time;
       link.broke_at = now.place;
-      all.lost += now.energy;
       ++all.events;
     }
-    if (all.events > 0) index();
+    if (all.events > 0) {
+      index();
+      gather(state);
+    }
     return all;
   }
 
@@ -305,11 +337,10 @@ class LinkTerm : public ForceTerm {
   std::size_t bytes() const override { return links_.size() * (sizeof(Link) + sizeof(LinkAction)); }
 
  private:
-  LinkAction action_of(const Link& link, const State& state) const {
-    const auto a = static_cast<std::size_t>(link.at.a), b = static_cast<std::size_t>(link.at.b);
+  LinkAction action_of(const LinkPlace& link, int on_a, int on_b, const State& state) const {
+    const auto a = static_cast<std::size_t>(on_a), b = static_cast<std::size_t>(on_b);
     const Quaternion q_a = state.orientation[a], q_b = state.orientation[b];
-    const Vector3 arm_a = q_a * link.at.p_a, arm_b = q_b * link.at.p_b, n_a = q_a * link.at.n_a,
-                  n_b = q_b * link.at.n_b;
+    const Vector3 arm_a = q_a * link.p_a, arm_b = q_b * link.p_b, n_a = q_a * link.n_a, n_b = q_b * link.n_b;
     const Vector3 d = (state.position[b] + arm_b) - (state.position[a] + arm_a);
     const double half = 0.5 * (law_.stretch - law_.shear), d_a = d.dot(n_a), d_b = d.dot(n_b);
     LinkAction out;
@@ -330,8 +361,8 @@ class LinkTerm : public ForceTerm {
     std::vector<int> count(static_cast<std::size_t>(scene_.elements()), 0);
     double lever = 0;
     for (const LinkPlace& link : at_start) {
-      ++count[static_cast<std::size_t>(link.a)];
-      ++count[static_cast<std::size_t>(link.b)];
+      ++count[static_cast<std::size_t>(scene_.original_of(link.a))];
+      ++count[static_cast<std::size_t>(scene_.original_of(link.b))];
     }
     for (const TubeType& type : scene_.types) {
       const double arm = type.radius + 0.5 * law_.reach, half = 0.5 * type.element_length;
@@ -354,9 +385,9 @@ class LinkTerm : public ForceTerm {
   }
   void take_in(LinkPlace place, const State& state) {
     Link link{std::move(place), state.time, never, Vector3::Zero(), Vector3::Zero()};
-    const LinkAction action = action_of(link, state);
+    const LinkAction action = action_of(link.at, link.at.a, link.at.b, state);
     link.formed_at = action.place;
-    given_ += action.energy;
+    given_ += (has_image(link.at) ? 2 : 1) * action.energy;
     ++begun_;
     links_.push_back(link);
   }
@@ -370,17 +401,18 @@ class LinkTerm : public ForceTerm {
     std::vector<int> count(state.size(), 0);
     for (const Link& link : links_)
       if (link.broke == never)
-        for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(e)];
+        for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
     // An element has room for a whole number of links. Its share, `most` times its length, is rounded up or down at
     // random, so that the mean over all elements is that share.
-    const auto full = [&](int e) {
+    const auto full = [&](int element) {
+      const int e = scene_.original_of(element);
       const double room = law_.most * element_length_ + drawn(law_, e, e, 0, room_question);
       return count[static_cast<std::size_t>(e)] + 1 > room;
     };
     const auto step = static_cast<std::uint32_t>(state.step) + 1;
     for (LinkPlace& place : placed_links(now, scene_, state, {}, step)) {
       if (full(place.a) || full(place.b)) continue;
-      for (const int e : {place.a, place.b}) ++count[static_cast<std::size_t>(e)];
+      for (const int e : {place.a, place.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
       take_in(std::move(place), state);
     }
     set_in_order(state);
@@ -395,12 +427,24 @@ class LinkTerm : public ForceTerm {
     std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
   }
 
+  // Of a slice: a link to an image above acts on the original through its own image, one period lower.
+  bool has_image(const LinkPlace& link) const { return scene_.is_image(link.a) || scene_.is_image(link.b); }
+
   // Without those that have broken.
   void index() {
+    acting_.clear();
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      const LinkPlace& at = links_[k].at;
+      if (links_[k].broke != never) continue;
+      acting_.push_back({k, at.a, at.b});
+      if (!has_image(at)) continue;
+      const auto lower = [&](int e) { return scene_.is_image(e) ? scene_.original_of(e) : scene_.image_below(e); };
+      acting_.push_back({k, lower(at.a), lower(at.b)});
+      ROPEWALK_EXPECTS(acting_.back().a >= 0 && acting_.back().b >= 0);
+    }
     const auto elements = static_cast<std::size_t>(scene_.elements());
-    const auto whole = [&](std::size_t k, int end) { return links_[k].broke == never ? end : -1; };
-    of_first_.sort_in(elements, links_.size(), [&](std::size_t k) { return whole(k, links_[k].at.a); });
-    of_second_.sort_in(elements, links_.size(), [&](std::size_t k) { return whole(k, links_[k].at.b); });
+    of_first_.sort_in(elements, acting_.size(), [&](std::size_t k) { return acting_[k].a; });
+    of_second_.sort_in(elements, acting_.size(), [&](std::size_t k) { return acting_[k].b; });
   }
 
   LinkLaw law_;
@@ -410,11 +454,12 @@ class LinkTerm : public ForceTerm {
   double stiffness_ = 0;
   std::vector<Link> links_;  // broken ones too: they are the history
   bool placed_ = false;
-  double last_formed_ = 0;  // ps
-  long begun_ = 0;          // links that advance() has yet to count
-  double given_ = 0;        // eV, that links formed with; likewise
-  std::vector<LinkAction> actions_;
-  Rows of_first_, of_second_;  // links by a and by b
+  double last_formed_ = 0;           // ps
+  long begun_ = 0;                   // links that advance() has yet to count
+  double given_ = 0;                 // eV, that links formed with; likewise
+  std::vector<ActingLink> acting_;   // whole ones, in their order
+  std::vector<LinkAction> actions_;  // of each of them
+  Rows of_first_, of_second_;        // acting links by a and by b
 };
 
 }  // namespace
@@ -455,10 +500,10 @@ std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology
     near.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
     std::sort(near.begin(), near.end());
     for (const int j : near)
-      if (law.density > 0 && j > i && is_linked(law, topology, i, j))
+      if (law.density > 0 && j > i && is_linked(law, topology, i, j) && stands_for_images(topology, i, j))
         choose(law, topology, state, i, j, law.density, step,
                [&](LinkPlace place) { links.push_back(std::move(place)); });
-    if (end && law.at_ends > 0) choose_at_end(law, topology, state, i, near, step, links);
+    if (end && law.at_ends > 0 && !topology.is_image(i)) choose_at_end(law, topology, state, i, near, step, links);
   }
   return links;
 }
