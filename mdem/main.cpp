@@ -330,6 +330,8 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--only", v.threshold.only, "Numbers from 1 or names of the points to search")->delimiter(',');
   c->add_option("--slurm", v.threshold.slurm, "Only write a SLURM array with a job for each point to this file");
   c->add_option("--snakemake", v.threshold.snakemake, "Only write a Snakemake file to this file");
+  c->add_flag("--theory", v.threshold.theory,
+              "Run nothing: tables and page of theory and of the runs that are there");
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });
@@ -376,9 +378,12 @@ void add_plan(CLI::App& app, Verbs& v) {
   c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
   c->add_option(
        "--pilot-seconds", v.plan.pilot_seconds,
-       "Processor time for all pilots, about; with more they need not be smaller than the scene [default: a "
-       "tenth of the run's, or a minute of each core]")
+       "Processor time for all pilots, about; with more they need not be smaller than the scene [default: first a "
+       "look at the default model, of a tenth of the runs' time or 5 s; then as much, or a minute of each core]")
       ->check(number_within(Bounds::positive()));
+  c->add_option("--runs", v.plan.runs, "Number of runs that the plan is for: a sweep is worth more pilots")
+      ->capture_default_str()
+      ->check(whole_number(1, 1000000));
   c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
   c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
       ->check(whole_number(1, 4096));

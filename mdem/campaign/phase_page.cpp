@@ -28,11 +28,29 @@ std::string values(const PhasePoint& p) {
   return text;
 }
 
-// By the number of tubes, which a diagram has a line for.
-std::map<int, std::vector<const PhasePoint*>> by_size(const std::vector<PhasePoint>& points) {
-  std::map<int, std::vector<const PhasePoint*>> out;
-  for (const PhasePoint& p : points) out[p.tubes].push_back(&p);
-  return out;
+// A diagram over the length: the points that have all else in common.
+struct Diagram {
+  std::string name;
+  std::vector<const PhasePoint*> points;
+};
+std::vector<Diagram> diagrams_of(const Sweep& sweep, const std::vector<PhasePoint>& points) {
+  std::vector<Diagram> all;
+  const std::vector<std::string> keys = sweep.keys();
+  for (const PhasePoint& p : points) {
+    std::string name = fmt::format("{} tubes", p.tubes);
+    std::size_t cell = 0;  // values are without that of start.seed
+    for (const std::string& key : keys) {
+      if (key == "start.seed") continue;
+      const std::string& value = p.values[cell++];
+      if (key != "rope.length_nm" && key != "rope.tubes") name += fmt::format(", {} = {}", leaf_of(key), value);
+    }
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Diagram& d) { return d.name == name; });
+    if (same == all.end())
+      all.push_back({name, {&p}});
+    else
+      same->points.push_back(&p);
+  }
+  return all;
 }
 
 struct Series {
@@ -60,11 +78,11 @@ std::string law_words(const Series& s) {
                                     : fmt::format("{:.2f}, of two points alone", law->exponent));
 }
 
-ScatterChart diagram(const Sweep& sweep, int tubes, const std::vector<const PhasePoint*>& points) {
+ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vector<const PhasePoint*>& points) {
   ScatterChart scatter;
   scatter.x_decades = scatter.y_decades = true;
   LineChart& chart = scatter.chart;
-  chart.title = fmt::format("Phase diagram of {} tubes", tubes);
+  chart.title = "Phase diagram of " + name;
   chart.x = {"length", "nm", false};
   chart.y = {leaf_of(sweep.threshold->key), "", false};
   chart.height = 380;
@@ -180,11 +198,11 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
         "rope "
         "that stays packed. Glued tubes would need EI + EA<rho^2>/2 in place of EI."));
-  for (const auto& [tubes, some] : by_size(points)) {
-    const std::string svg = scatter_svg(diagram(sweep, tubes, some));
+  for (const auto& [name, some] : diagrams_of(sweep, points)) {
+    const std::string svg = scatter_svg(diagram(sweep, name, some));
     if (svg.empty()) continue;
     const Series foreseen = by_theory(some, &PhasePoint::kinetic_theory);
-    html += heading(fmt::format("{} tubes", tubes)) + "<figure>" + svg +
+    html += heading(escape_markup(name)) + "<figure>" + svg +
             figures.caption(escape_markup(fmt::format(
                 "Every run by the shape that the rope took, filled where it passed; and the thresholds. By "
                 "bisection it {}{}.",

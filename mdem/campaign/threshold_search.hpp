@@ -24,6 +24,9 @@ class ThresholdSearch {
   // from time to time, and at the end. Ends early by io/stop_signals.hpp.
   void go(int jobs, const std::function<void(const SweepPoint& point, bool well)>& ended);
 
+  // Tables and page of what is known.
+  void write(bool with_pictures = true) const;
+
   std::size_t size() const { return chosen_.size(); }
   const std::vector<SweepPoint>& points() const { return points_; }
   std::vector<PhasePoint> results() const { return phase_points(dir_, sweep_, points_, known_); }
@@ -37,7 +40,6 @@ class ThresholdSearch {
   int walk_from(double value, const SweepPoint& point) const;
   int bisect(const SweepPoint& point) const;
   void write_line_of(const SweepPoint& point) const;
-  void write(bool with_pictures) const;
   std::vector<StatePicture> states() const;
 
   Sweep sweep_;

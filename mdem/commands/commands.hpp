@@ -145,6 +145,7 @@ struct ThresholdArguments {
   std::vector<std::string> only;  // numbers from 1 or names of points; empty: all
   std::string slurm, snakemake;   // write this file and run nothing
   int jobs = 0;                   // points at a time; 0: one for each core
+  bool theory = false;            // run nothing
   bool force = false;
   bool quiet = false;
 };
@@ -206,7 +207,8 @@ struct PlanArguments {
   std::string against;       // with `check`: directory of a finer run of the same scene; empty: a short one is made
   std::string finest;        // file for the scene with the finest model; empty: none
   double stretch = 4;        // ps
-  double pilot_seconds = 0;  // processor time of all pilots; 0: a tenth of the run, or a minute of each core
+  double pilot_seconds = 0;  // processor time of all pilots; 0: a tenth of the runs, or a minute of each core
+  int runs = 1;              // that the plan is for
   int jobs = 0;              // pilots at a time; 0: one for each core
 };
 int plan_command(const PlanArguments& arguments);

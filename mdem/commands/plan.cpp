@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Processor time for all pilots together, unless the user gives one: the larger of a tenth of the run's and a
-// minute of each core.
-constexpr double planning_part = 0.1, least_planning = 60;
+// A plan is worth a tenth of the runs that it is for, or 5 s. Where that is not enough to find one, all pilots
+// together take a minute of each core.
+constexpr double planning_part = 0.1, first_look = 5, least_planning = 60;  // -, s, s
 
 double error_of(const std::string& text) {
   char* end = nullptr;
@@ -65,8 +65,11 @@ int make_plan(const PlanArguments& a) {
   const double seconds = standard.steps > 0 ? standard.total() : standard.outputs + guessed_steps * standard.each;
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   PilotRuns runs(scene.path, jobs);
-  const double affordable =
-      a.pilot_seconds > 0 ? a.pilot_seconds : std::max(jobs * least_planning, planning_part * seconds);
+  double affordable = a.pilot_seconds;
+  if (!(affordable > 0)) {
+    request.first_look = std::max(first_look, planning_part * a.runs * seconds);
+    affordable = std::max(jobs * least_planning, request.first_look);
+  }
   Plan plan = plan_scene(scene, request, seconds, affordable, std::ref(runs));
   print_pilots(plan, runs.seconds());
   Expectations promised;

@@ -73,6 +73,11 @@ int threshold_command(const ThresholdArguments& a) {
   const double began = steady_seconds();
   std::size_t done = 0;
   std::vector<std::string> failed;
+  if (a.theory) {
+    search.write();
+    print_results(dir, search.results());
+    return 0;
+  }
   search.go(jobs, [&](const SweepPoint& p, bool well) {
     ++done;
     if (!well) failed.push_back(p.name);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "io/plain_text.hpp"
@@ -37,10 +38,15 @@ bool has_random_numbers(const Scene& scene) {
 
 class Planner {
  public:
-  Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run)
+  // Only the default and the finest model, or all that might do.
+  enum class Pilots { first_two, all };
+
+  Planner(const Scene& scene, const PlanRequest& request, double seconds, double affordable, const RunPilots& run,
+          Pilots pilots)
       : request_(request), run_(run) {
     scene_ = scene_with_features(scene.text, scene.path, features_);
-    const PilotScene pilot = pilot_scene(scene_, seconds, affordable / pilots_in_all());
+    const double in_all = pilots == Pilots::all ? pilots_in_all() : finest_in_defaults() + 1;
+    const PilotScene pilot = pilot_scene(scene_, seconds, affordable / in_all);
     plan_.pilots = pilot.words;
     caution_ = pilot.caution;
     plan_.until = pilot.until;
@@ -51,33 +57,49 @@ class Planner {
   }
 
   Plan go() {
-    const std::vector<ModelChange> finest = finest_changes(pilot_, pilot_features_);
-    halves_ = kept_length(pilot_).empty();
-    if (!halves_)
-      plan_.remarks.push_back("The error of the element length is not in the promise: " + kept_length(pilot_) +
-                              ".");
+    const std::vector<ModelChange> finest = finest_of_pilot();
     std::vector<std::string> not_tried;
     const std::vector<ModelChange> cheaper =
         cheaper_changes(pilot_, pilot_features_, request_.end_state, not_tried);
     for (const std::string& words : not_tried) plan_.remarks.push_back("Not tried: " + words + ".");
 
-    first_pilots(finest, cheaper);
+    first_pilots(finest, cheaper, true);
     if (!plan_.standard.holds && halves_ && !relaxes_) try_together({finest.front()});
     combine(cheaper);
     choose();
     return std::move(plan_);
   }
 
+  // The default model, if it holds the error.
+  std::optional<Plan> default_if_it_holds() {
+    first_pilots(finest_of_pilot(), {}, false);
+    if (!plan_.standard.holds) return {};
+    choose();
+    plan_.remarks.push_back(
+        "The default model holds. To try cheaper ones would take longer than they save: --runs N plans for so many "
+        "runs, --pilot-seconds for so much time.");
+    return std::move(plan_);
+  }
+
  private:
   // --- pilots ---
+
+  std::vector<ModelChange> finest_of_pilot() {
+    halves_ = kept_length(pilot_).empty();
+    if (!halves_)
+      plan_.remarks.push_back("The error of the element length is not in the promise: " + kept_length(pilot_) +
+                              ".");
+    return finest_changes(pilot_, pilot_features_);
+  }
+  double finest_in_defaults() const { return kept_length(scene_).empty() ? 5 : 2; }
 
   // The time of all pilots together, in runs of the default model, about.
   double pilots_in_all() const {
     std::vector<std::string> not_tried;
     const auto changes =
         static_cast<double>(cheaper_changes(scene_, features_, request_.end_state, not_tried).size());
-    const double finest = kept_length(scene_).empty() ? 5 : 2, together = std::clamp(changes - 1, 0.0, 2.0);
-    return finest + 1 + (has_random_numbers(scene_) ? seeds - 1 : 0) + changes + together;
+    const double together = std::clamp(changes - 1, 0.0, 2.0);
+    return finest_in_defaults() + 1 + (has_random_numbers(scene_) ? seeds - 1 : 0) + changes + together;
   }
 
   static std::string name_of(const std::vector<ModelChange>& changes) {
@@ -106,12 +128,13 @@ class Planner {
   }
   Outcome outcome(const PlannedModel& m, const PilotEnd& end) const { return outcome(end, relaxes_ || m.relaxed); }
 
-  // The finest model, the default with its seeds, and every change alone.
-  void first_pilots(const std::vector<ModelChange>& finest, const std::vector<ModelChange>& cheaper) {
+  // The finest model, the default, with its seeds if asked for, and every change alone.
+  void first_pilots(const std::vector<ModelChange>& finest, const std::vector<ModelChange>& cheaper,
+                    bool by_seeds) {
     plan_.finest = model_of(finest);
     plan_.standard = model_of({});
     std::vector<PilotTask> tasks = {task(plan_.finest), task(plan_.standard)};
-    const int more = has_random_numbers(pilot_) ? seeds - 1 : 0;
+    const int more = by_seeds && has_random_numbers(pilot_) ? seeds - 1 : 0;
     for (int k = 1; k <= more; ++k) tasks.push_back(by_chance(k));
     for (const ModelChange& change : cheaper) {
       plan_.tried.push_back(model_of({change}));
@@ -293,7 +316,12 @@ class Planner {
 
 Plan plan_scene(const Scene& scene, const PlanRequest& request, double seconds, double affordable,
                 const RunPilots& run) {
-  return Planner(scene, request, seconds, affordable, run).go();
+  using Pilots = Planner::Pilots;
+  if (request.first_look > 0 && request.first_look < affordable)
+    if (std::optional<Plan> plan =
+            Planner(scene, request, seconds, request.first_look, run, Pilots::first_two).default_if_it_holds())
+      return *std::move(plan);
+  return Planner(scene, request, seconds, affordable, run, Pilots::all).go();
 }
 
 std::string default_text(const Scene& scene) {

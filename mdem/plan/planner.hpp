@@ -23,6 +23,9 @@ struct PlanRequest {
   double error = 0.02;                   // largest, of each observable
   std::vector<std::string> observables;  // "energy" and columns of the log; empty: usual_observables()
   bool end_state = false;                // the motion itself does not matter
+  // s of processor time for pilots of the default and the finest model alone: if the default holds the error in
+  // them, it is the plan. 0: no such look.
+  double first_look = 0;
 };
 
 struct PilotTask {

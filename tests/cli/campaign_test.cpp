@@ -312,6 +312,11 @@ TEST_F(Campaign, ThresholdOfAHelixBeginsAtTheory) {
        "hold_ps = 100\n[run]\nlog_every_ps = 1\n");
   sweep_file(
       "[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 20\nto = 150\nshape = \"helix\"\naccuracy = 0.05\n");
+  const Outcome theory = run("threshold s.toml --out theory --theory");
+  ASSERT_EQ(theory.code, 0) << theory.err;
+  EXPECT_NE(theory.out.find("not run yet"), std::string::npos) << theory.out;
+  EXPECT_NE(theory.out.find("0 runs,"), std::string::npos) << theory.out;
+  EXPECT_NE(slurp(dir / "theory/thresholds.html").find("theory, in this time"), std::string::npos);
   const Outcome o = run("threshold s.toml");
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.out.find("none grows below 59.38"), std::string::npos) << o.out;

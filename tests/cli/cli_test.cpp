@@ -108,7 +108,8 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
     // A limit that the scene passes stands in the first line.
     std::smatch limit;
     if (std::regex_search(o.out, limit, std::regex("note: The load may bring (\\S+) to"))) {
-      EXPECT_NE(made.out.substr(0, made.out.find('\n')).find("limits." + limit.str(1)), std::string::npos) << made.out;
+      EXPECT_NE(made.out.substr(0, made.out.find('\n')).find("limits." + limit.str(1)), std::string::npos)
+          << made.out;
     }
     EXPECT_NE(o.out.find("time step"), std::string::npos);
     ++count;
@@ -230,8 +231,8 @@ TEST_F(Cli, ARunThatARuleEndedIsNotTakenFurther) {
   }
 }
 
-// The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0 that
-// looks like a perfect one.
+// The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0
+// that looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
   small_rope("s.toml", "duration_ps = 0.1\n[observe]\nneighbour_radius_nm = 3.05\n");
   const Outcome o = run("run s.toml --out d --quiet");
@@ -312,7 +313,7 @@ TEST_F(Cli, PlanRunAndCheck) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
        "[twist]\nmoment_nN_nm = 6\nrate_nN_nm_per_ps = 1\nhold_ps = 4\n");
-  const Outcome plan = run("plan s.toml --error 4% --finest f.toml");
+  const Outcome plan = run("plan s.toml --error 4% --finest f.toml --pilot-seconds 120");
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_NE(plan.out.find("pilots: the whole scene"), std::string::npos) << plan.out;
   EXPECT_TRUE(std::regex_search(plan.out, std::regex("\ndefault +1.00 .* %.* holds\n"))) << plan.out;
@@ -320,6 +321,15 @@ TEST_F(Cli, PlanRunAndCheck) {
       << plan.out;
   EXPECT_NE(plan.out.find("processor time promised"), std::string::npos) << plan.out;
   EXPECT_EQ(run("plan s.toml --error 4%").code, 2) << "an existing file must stand";
+  // A short run is not worth more than a look at the default.
+  const Outcome look = run("plan s.toml --error 20% -o look.toml");
+  ASSERT_EQ(look.code, 0) << look.err;
+  EXPECT_NE(look.out.find("planned for 20 %: default."), std::string::npos) << look.out;
+  EXPECT_NE(look.out.find("The default model holds. To try cheaper ones would take longer than they save"),
+            std::string::npos)
+      << look.out;
+  EXPECT_EQ(run("plan s.toml --error 20% -o many.toml --runs 100000").out.find("To try cheaper ones"),
+            std::string::npos);
   EXPECT_EQ(run("plan s.toml -o t.toml --finest f.toml").code, 2);
   EXPECT_EQ(run("plan s.toml --error 4 -o t.toml").code, 2);
   EXPECT_EQ(run("plan s.toml -o t.toml --observables colour").code, 2);
@@ -537,16 +547,19 @@ TEST_F(Cli, RunStopsAtATime) {
 
 TEST_F(Cli, CheckSaysWhichTubesAGripHoldsAndWhatARunTakes) {
   for (const char* format : {"gsd", "lammpstrj"}) {
-    spit(dir / "s.toml", fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 37\n"
-                                     "length_nm = 60\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\ntubes = [0, 3]\n"
-                                     "about_z = {{ rotation_deg = [[0, 0], [2, 1]] }}\n[run]\nduration_ps = 2\n"
-                                     "frames_every_ps = 0.1\nframes_format = \"{}\"\n",
-                                     format));
+    spit(dir / "s.toml",
+         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 37\n"
+                     "length_nm = 60\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\ntubes = [0, 3]\n"
+                     "about_z = {{ rotation_deg = [[0, 0], [2, 1]] }}\n[run]\nduration_ps = 2\n"
+                     "frames_every_ps = 0.1\nframes_format = \"{}\"\n",
+                     format));
     const std::string out = run("check s.toml").out;
     EXPECT_NE(out.find("1 deg in 2 ps; on tubes 0, 3\n"), std::string::npos) << out;
     EXPECT_EQ(out.find("; on tube", out.find("; on tube") + 1), std::string::npos) << "the lower one holds all";
     std::smatch found;
-    ASSERT_TRUE(std::regex_search(out, found, std::regex("about (\\S+) MB of memory and (\\S+) MB of files, (\\d+) frames"))) << out;
+    ASSERT_TRUE(std::regex_search(out, found,
+                                  std::regex("about (\\S+) MB of memory and (\\S+) MB of files, (\\d+) frames")))
+        << out;
     EXPECT_EQ(found[3], "21");
     ASSERT_EQ(run(fmt::format("run s.toml --out {} --quiet", format)).code, 0);
     double bytes = 0;
@@ -578,7 +591,8 @@ TEST_F(Cli, ResumeGoesOnBitForBitOnOtherThreads) {
   const auto whole = ropewalk::read_log((dir / "whole/log.csv").string());
   const auto parts = ropewalk::read_log((dir / "parts/log.csv").string());
   for (const auto& column : ropewalk::observables())
-    EXPECT_THAT(parts.back()[column.name], ::testing::NanSensitiveDoubleEq(whole.back()[column.name])) << column.name;
+    EXPECT_THAT(parts.back()[column.name], ::testing::NanSensitiveDoubleEq(whole.back()[column.name]))
+        << column.name;
   const Json observed = Json::parse(run("observe parts --json").out);
   EXPECT_GT(observed.size(), 3u);
 }
@@ -924,7 +938,8 @@ hold_ps = 10
   ASSERT_EQ(table.code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
   EXPECT_NE(table.out.find("of the parameters alone"), std::string::npos) << table.out;
-  // The twist energy still moves in the last rows by more than the error of the fit: no digit beyond that is printed.
+  // The twist energy still moves in the last rows by more than the error of the fit: no digit beyond that is
+  // printed.
   EXPECT_GT(twist.at("moves_by").get<double>(), 2 * twist.at("standard_error").get<double>());
   EXPECT_TRUE(std::regex_search(table.out, std::regex("\ntwist_eV +[0-9]+\\.[0-9]{1,5} "))) << table.out;
   EXPECT_EQ(run("errors rope.toml").code, 2);

@@ -317,8 +317,9 @@ TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
   }
 }
 
-// A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its files
-// are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary folder.
+// A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its
+// files are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary
+// folder.
 struct VerbOfProcesses {
   std::string command;
   std::vector<std::string> results;  // below d
@@ -428,8 +429,8 @@ class FaultsOfProcesses : public Faults {
     fmt::print("kill and full disk in {}: {} tried\n", verb.command, tried);
   }
 
-  // Files that a broken command may leave different from those of an undisturbed one: tables and pages of the points
-  // that have ended, and the results of a case that was killed, which name the failure.
+  // Files that a broken command may leave different from those of an undisturbed one: tables and pages of the
+  // points that have ended, and the results of a case that was killed, which name the failure.
   static bool of_a_failure(const std::string& name) {
     return name.find("w/t") == 0 || name.find(".json") != std::string::npos ||
            name.find("report.html") != std::string::npos || name.find("tubes.csv") != std::string::npos;
@@ -442,7 +443,12 @@ TEST_F(FaultsOfProcesses, PlanBrokenOff) {
   const auto without_times = [](const std::string& text) {
     return std::regex_replace(text, std::regex("# plan: seconds [^\n]*"), "");
   };
-  break_off_everywhere({"plan s.toml -o d/planned.toml -j 1", {"planned.toml"}, [&] { begin(""); }, 23, without_times, 0,
+  break_off_everywhere({"plan s.toml -o d/planned.toml -j 1 --pilot-seconds 120",
+                        {"planned.toml"},
+                        [&] { begin(""); },
+                        23,
+                        without_times,
+                        0,
                         true});
 }
 
@@ -456,7 +462,7 @@ TEST_F(FaultsOfProcesses, PlanWithoutRoomForAPilot) {
     begin("");
     fs::create_directories(dir / "d/t");
     for (const char* name : {"made", "together", "planned.toml"}) fs::remove(dir / name);
-    const Outcome o = with(fmt::format("ENOSPC:{}", n), "plan s.toml -o planned.toml -j 1");
+    const Outcome o = with(fmt::format("ENOSPC:{}", n), "plan s.toml -o planned.toml -j 1 --pilot-seconds 120");
     if (!fs::exists(dir / "made")) break;
     EXPECT_EQ(o.code, 3) << n << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << n << o.err;
@@ -473,9 +479,10 @@ TEST_F(FaultsOfProcesses, ThresholdBrokenOff) {
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 6.78\n"
        "[damping]\nbond_damping_per_ps = 4\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\nhold_ps = 1\n[run]\n"
        "log_every_ps = 0.2\n");
-  spit(dir / "w.toml",
-       "format = \"ropewalk-sweep-1\"\nscene = \"tube.toml\"\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 18\n"
-       "to = 20\ncolumn = \"rotation_deg\"\nabove = 20\naccuracy = 0.2\n");
+  spit(
+      dir / "w.toml",
+      "format = \"ropewalk-sweep-1\"\nscene = \"tube.toml\"\n[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 18\n"
+      "to = 20\ncolumn = \"rotation_deg\"\nabove = 20\naccuracy = 0.2\n");
   break_off_everywhere({"threshold w.toml --out d/w -j 1 --quiet",
                         {"w/thresholds.csv", "w/trials.csv", "w/thresholds.html"},
                         [&] { begin(""); },
@@ -498,7 +505,8 @@ TEST_F(FaultsOfProcesses, ParametrizeBrokenOff) {
   for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
     fs::copy(ROPEWALK_SOURCE_DIR "/data/parameters/" + name + file, dir / "ready/p");
   const std::string folder = "ready/p/" + name + "-validation";
-  ASSERT_EQ(run("validate run " + of_one + " --parameters ready/p/" + name + ".toml --quiet --out " + folder).code, 0)
+  ASSERT_EQ(run("validate run " + of_one + " --parameters ready/p/" + name + ".toml --quiet --out " + folder).code,
+            0)
       << slurp(dir / "stderr.txt");
   nlohmann::ordered_json result = nlohmann::ordered_json::parse(slurp(dir / folder / (of_one + ".json")));
   const auto cases = nlohmann::json::parse(run("validate list --json").out);
