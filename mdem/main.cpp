@@ -219,6 +219,8 @@ void add_picture(CLI::App& app, Verbs& v) {
       ->capture_default_str();
   c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
       ->delimiter(',');
+  c->add_option("--x", v.picture.x,
+                "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");
   c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
   c->add_option("--width", v.picture.width, "Width of the figure, pixels")
       ->capture_default_str()

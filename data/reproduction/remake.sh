@@ -14,6 +14,11 @@ done
 cp runs/fig5/thresholds.csv fig5-thresholds.csv
 cp runs/fig5/trials.csv fig5-trials.csv
 cp runs/fig5/thresholds.html fig5.html
+for theory in fig5-theory fig5-viscosity; do
+  "$program" threshold $theory.toml --out runs/$theory --theory
+  cp runs/$theory/thresholds.csv $theory.csv
+  cp runs/$theory/thresholds.html $theory.html
+done
 viscous=contact_viscosity_eV_ps_per_nm2
 curves=twist_eV+bend_eV+vdw_eV,Q
 "$program" picture runs/fig2/points/moment_nN_nm-64_$viscous-8 --at 32,64,100,214 --sections --curves $curves \

@@ -80,11 +80,10 @@ std::string law_words(const Series& s) {
 
 ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vector<const PhasePoint*>& points) {
   ScatterChart scatter;
-  scatter.x_decades = scatter.y_decades = true;
   LineChart& chart = scatter.chart;
   chart.title = "Phase diagram of " + name;
-  chart.x = {"length", "nm", false};
-  chart.y = {leaf_of(sweep.threshold->key), "", false};
+  chart.x = {"length", "nm", false, true};
+  chart.y = {leaf_of(sweep.threshold->key), "", false, true};
   chart.height = 380;
   // The runs by the shape that they took, hollow where they did not pass.
   std::map<std::string, std::size_t> lines;

@@ -68,6 +68,7 @@ struct PictureArguments {
   std::vector<double> at;           // ps; empty: four times over the run
   std::string from = "side";        // or "x", "y", "z", "AZIMUTH,ELEVATION"
   std::vector<std::string> curves;  // "twist_eV+bend_eV" is one chart
+  std::string x;                    // column over which they are drawn; empty: time
   bool sections = false;
   double width = 1040, highest = 200;  // pixels, of the figure and of each state
   double zoom = 2;                     // of a PNG

@@ -54,6 +54,8 @@ int picture_command(const PictureArguments& a) {
   options.from = a.from;
   options.sections = a.sections;
   options.curves = curves_of(a.curves);
+  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
+  options.x = a.x;
   options.width = a.width;
   options.highest = a.highest;
   const std::string svg = run_plate({a.dir}, options);

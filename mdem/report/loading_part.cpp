@@ -25,8 +25,8 @@ std::string against_rotation(const std::vector<LogRow>& log) {
   return largest(log, "rotation_deg") > 1 ? "rotation_deg" : "";
 }
 
-// Draws the mean torque of both ends with a band from one end to the other if clamps hold both: a wave that travels along
-// the rope widens the band. Else it draws the torque at the held end.
+// Draws the mean torque of both ends with a band from one end to the other if clamps hold both: a wave that travels
+// along the rope widens the band. Else it draws the torque at the held end.
 Panel torque(const std::vector<LogRow>& log) {
   const LogValue upper = logged("torque_upper_nN_nm"), lower = logged("torque_lower_nN_nm");
   const double most_upper = largest(log, "torque_upper_nN_nm"), most_lower = largest(log, "torque_lower_nN_nm");
@@ -44,21 +44,23 @@ Panel torque(const std::vector<LogRow>& log) {
     if (std::isfinite(mean(r))) apart += half(r), whole += std::fabs(mean(r));
   out.caption = fmt::format(
       "Torque about z that twists the rope, mean of both ends and of the time between two rows. The band goes from "
-      "one end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their mean.",
+      "one end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their "
+      "mean.",
       number_text(100 * apart / whole, 2));
   out.traces = {{"mean of both ends", mean, 0, false, half}};
   return out;
 }
 
 Panel tension(const std::vector<LogRow>& log) {
-  return {"Tension",
-          "Force along z that pulls at either end, mean over the time between two rows. At the start clamps bear the "
-          "cohesion of the rope, which would shorten free tubes a little.",
-          {"tension", "nN", false},
-          {{"upper", logged("tension_upper_nN"), 0}, {"lower", logged("tension_lower_nN"), 1}},
-          false,
-          false,
-          against_rotation(log)};
+  return {
+      "Tension",
+      "Force along z that pulls at either end, mean over the time between two rows. At the start clamps bear the "
+      "cohesion of the rope, which would shorten free tubes a little.",
+      {"tension", "nN", false},
+      {{"upper", logged("tension_upper_nN"), 0}, {"lower", logged("tension_lower_nN"), 1}},
+      false,
+      false,
+      against_rotation(log)};
 }
 
 Panel stored(const std::vector<LogRow>& log) {
@@ -138,8 +140,9 @@ std::string tension_figure(const ReportInput& in, Figures& figures) {
   }
   if (!can_draw(chart)) return not_drawn(title);
   return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
-         figures.caption("In the last frame, mean over the tubes that start at the same distance from the axis. The "
-                         "position is counted from the lower end.") +
+         figures.caption(
+             "In the last frame, mean over the tubes that start at the same distance from the axis. The "
+             "position is counted from the lower end.") +
          data_table(columns, "ropewalk observe --tubes lists every tube.") + "</figure>\n";
 }
 
@@ -170,10 +173,13 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
   return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
          figures.caption(
              "Of the contacts across a tube in the middle of the rope, mean over the tubes that start at the same "
-             "distance from the axis; negative where they are drawn apart. Tension presses on the inner tubes; and the "
-             "neighbours of a twisted tube, cut across, need more room around the axis than there is, which draws the "
+             "distance from the axis; negative where they are drawn apart. Tension presses on the inner tubes; and "
+             "the "
+             "neighbours of a twisted tube, cut across, need more room around the axis than there is, which draws "
+             "the "
              "inner tubes apart.") +
-         data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") + "</figure>\n";
+         data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") +
+         "</figure>\n";
 }
 
 // Turned and turned back.
@@ -181,12 +187,13 @@ std::string loop_words(const std::vector<LogRow>& log) {
   const double most = largest(log, "rotation_deg"), last = std::fabs(log.back()["rotation_deg"]);
   const double in = largest(log, "work_eV"), lost = log.back()["dissipated_eV"];
   if (most < 5 || last > 0.5 * most || !(in > 0)) return "";
-  return paragraph(
-      fmt::format("The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} "
-                  "eV, <b>{} %</b>, are lost to damping or still move.",
-                  number_text(most), last < 0.01 ? "0" : number_text(last, 3), number_text(in), number_text(in - log.back()["work_eV"]),
-                  number_text(log.back()["work_eV"] - (potential_energy(log.back()) - potential_energy(log.front()))),
-                  number_text(100 * lost / in, 3)));
+  return paragraph(fmt::format(
+      "The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} "
+      "eV, <b>{} %</b>, are lost to damping or still move.",
+      number_text(most), last < 0.01 ? "0" : number_text(last, 3), number_text(in),
+      number_text(in - log.back()["work_eV"]),
+      number_text(log.back()["work_eV"] - (potential_energy(log.back()) - potential_energy(log.front()))),
+      number_text(100 * lost / in, 3)));
 }
 
 // The figures of other authors and samples, with their sources.
@@ -197,7 +204,8 @@ std::string literature() {
     const char* source;
   };
   constexpr Row rows[] = {
-      {"steel spring", "1.4·10⁻⁴", "Utsumi et al., Nat. Nanotechnol. 19, 1007 (2024), doi:10.1038/s41565-024-01645-x"},
+      {"steel spring", "1.4·10⁻⁴",
+       "Utsumi et al., Nat. Nanotechnol. 19, 1007 (2024), doi:10.1038/s41565-024-01645-x"},
       {"lithium-ion battery", "≤ 0.72", "the same"},
       {"ropes of single-walled tubes, pristine, turned by a motor: mean, largest", "0.22, 0.45",
        "KAKEN 16K04893 (2018)"},
@@ -205,7 +213,8 @@ std::string literature() {
        "KAKEN 19K05215 (2021); Utsumi et al. 2024"},
       {"bundle of carbon nanothreads, molecular dynamics", "1.76",
        "Zhan et al., Nat. Commun. 11, 1905 (2020), doi:10.1038/s41467-020-15807-7"},
-      {"limit by calculations of DFT type", "8", "KAKEN 16K04893; Fthenakis et al., Phys. Rev. B 95, 245402 (2017)"},
+      {"limit by calculations of DFT type", "8",
+       "KAKEN 16K04893; Fthenakis et al., Phys. Rev. B 95, 245402 (2017)"},
   };
   std::string html =
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Sample or model</th><th "
@@ -221,7 +230,8 @@ std::string literature() {
 std::string loading_part(const ReportInput& in, Figures& figures) {
   if (in.log.size() < 2 || !in.loaded) return "";
   const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
-  const bool twisted = in.rope && largest(in.log, "torque_upper_nN_nm") + largest(in.log, "torque_lower_nN_nm") > 0.01;
+  const bool twisted =
+      in.rope && largest(in.log, "torque_upper_nN_nm") + largest(in.log, "torque_lower_nN_nm") > 0.01;
   const bool pulled = largest(in.log, "tension_upper_nN") + largest(in.log, "tension_lower_nN") > 1e-3;
   if (!twisted && !pulled) return "";
   std::string html = heading("Loads at both ends");
@@ -233,11 +243,12 @@ std::string loading_part(const ReportInput& in, Figures& figures) {
   const std::string energy = panel(stored(in.log)), parts = panel(shares(in.log));
   html += pair_of(energy, parts);
   if (twisted && largest(in.log, "stored_MJ_per_kg") > 1e-3)
-    html += paragraph(fmt::format("This rope stores up to <b>{} MJ/kg</b> in this run. Beside it, what others measured "
-                                  "and calculated. One perfect bundle is not a macroscopic rope: a yarn has bundles "
-                                  "that slip, gaps, bent and short tubes, and the mass of what is not loaded.",
-                                  number_text(largest(in.log, "stored_MJ_per_kg"), 3))) +
-            literature();
+    html +=
+        paragraph(fmt::format("This rope stores up to <b>{} MJ/kg</b> in this run. Beside it, what others measured "
+                              "and calculated. One perfect bundle is not a macroscopic rope: a yarn has bundles "
+                              "that slip, gaps, bent and short tubes, and the mass of what is not loaded.",
+                              number_text(largest(in.log, "stored_MJ_per_kg"), 3))) +
+        literature();
   if (in.loading.empty()) return html;
   html += heading("Inside the rope");
   const std::string along = tension_figure(in, figures), across = pressure_figure(in, figures);

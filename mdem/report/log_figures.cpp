@@ -10,6 +10,11 @@
 
 namespace ropewalk {
 
+ChartAxis column_axis(const std::string& column) {
+  const Observable& o = observables()[index_of_observable(column)];
+  return {quantity_of(o), o.unit, o.whole};
+}
+
 LogValue logged(const std::string& column) {
   return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
 }

@@ -11,6 +11,7 @@ namespace ropewalk {
 
 using LogValue = std::function<double(const LogRow&)>;
 LogValue logged(const std::string& column);
+ChartAxis column_axis(const std::string& column);
 
 struct Trace {
   std::string name;

@@ -41,8 +41,7 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
   const double left = 0.5 * (stage.width - c.width * c.scale);
   // The picture begins at the highest point of its own rope.
   const double top = head_height + (stage.high - highest(view, c.up) - 1.5 * stage.tube_radius) * c.scale;
-  std::string body =
-      fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", edge, escape_markup(when));
+  std::string body = fmt::format("<text x=\"{}\" y=\"26\" font-size=\"17\">{}</text>\n", edge, escape_markup(when));
   body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", left, std::isfinite(top) ? top : head_height) +
           rope_picture(view, c, stage.tube_radius, "m", false).substr(4);
   const double bar = scale_bar_length(c), y = stage.height - 0.5 * foot_height;

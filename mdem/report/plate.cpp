@@ -46,14 +46,15 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   LineChart& chart = scatter.chart;
   const Observable& first = observables()[index_of_observable(columns.front())];
   chart.title = columns.front();
-  chart.x = clock.axis;
+  const std::string& over = in.x.empty() ? clock.column : in.x;
+  chart.x = in.x.empty() ? clock.axis : column_axis(in.x);
   chart.y = {columns.size() == 1  ? name_of(columns.front())
              : first.unit == "eV" ? "energy"
                                   : name_of(columns.front()),
              first.unit, first.whole};
   chart.width = width;
   chart.height = chart_height;
-  const std::vector<double> x = values_of(in.log, logged(clock.column));
+  const std::vector<double> x = values_of(in.log, logged(over));
   for (std::size_t k = 0; k < columns.size(); ++k) {
     chart.lines.push_back(
         {name_of(columns[k]), x, values_of(in.log, logged(columns[k])), static_cast<int>(k) % categorical_colours});
@@ -68,7 +69,7 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
       return std::fabs(a["time_ps"] - in.views[k].time_ps) < std::fabs(b["time_ps"] - in.views[k].time_ps);
     });
     if (at == in.log.end()) continue;
-    marks.x.push_back((*at)[clock.column]);
+    marks.x.push_back((*at)[over]);
     marks.y.push_back((*at)[columns.front()]);
     letters.push_back(letter(k));
   }

@@ -18,6 +18,7 @@ struct PlateInput {
   std::vector<LogRow> log;
   // Charts below, each with one column or more of the same unit; empty: none.
   std::vector<std::vector<std::string>> curves;
+  std::string x;  // a column of the log, over which the charts are drawn; empty: time
   RopeCamera camera;
   double width = 1040;  // pixels
 };

@@ -127,7 +127,8 @@ Panel work_and_heat(const std::vector<LogRow>& log) {
               {{"work", logged("work_eV"), 0}, {"lost", logged("dissipated_eV"), 1}}};
   if (log.empty() || clock_of(log).counts_steps()) return panel;
   int colour = 2;
-  for (const auto& [to, column] : {std::pair{"to damping", "damping_eV"}, {"to slip", "friction_slip_eV"}, {"to drag", "friction_drag_eV"}})
+  for (const auto& [to, column] :
+       {std::pair{"to damping", "damping_eV"}, {"to slip", "friction_slip_eV"}, {"to drag", "friction_drag_eV"}})
     if (log.back()[column] != 0 && log.back()[column] != log.back()["dissipated_eV"])
       panel.traces.push_back({to, logged(column), colour++});
   panel.caption += " " + damping_words(log.back());
@@ -290,7 +291,8 @@ std::string ending(const ReportInput& in) {
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
-  if (in.status == "stopped") return "The run was " + escape_markup(in.reason) + ". This page shows it up to there.";
+  if (in.status == "stopped")
+    return "The run was " + escape_markup(in.reason) + ". This page shows it up to there.";
   if (in.status == "refined") return "The run ended here" + reason + ".";
   if (in.status == "failed") return "The run failed" + reason + ". This page shows it up to there.";
   if (in.status == "running") return "The run had not ended when this page was made" + reason + ".";

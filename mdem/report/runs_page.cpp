@@ -20,11 +20,6 @@ const char* const usual[] = {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-ChartAxis axis_of(const std::string& column) {
-  const Observable& o = observables()[index_of_observable(column)];
-  return {quantity_of(o), o.unit, o.whole};
-}
-
 bool varies(const std::vector<RunCurve>& runs, const std::string& column) {
   const LogValue value = logged(column);
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -59,10 +54,10 @@ int colour_of(std::size_t k, std::size_t n) {
 ScatterChart chart_of(const std::vector<RunCurve>& runs, const RunsFigure& figure, const std::string& column) {
   ScatterChart scatter;
   LineChart& chart = scatter.chart;
-  chart.title = axis_of(column).quantity + " against " + axis_of(figure.x).quantity;
-  chart.x = axis_of(figure.x);
-  chart.y = axis_of(column);
-  scatter.y_decades = figure.y_decades;
+  chart.title = column_axis(column).quantity + " against " + column_axis(figure.x).quantity;
+  chart.x = column_axis(figure.x);
+  chart.y = column_axis(column);
+  chart.y.decades = figure.y_decades;
   const LogValue x = logged(figure.x), y = logged(column);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -189,11 +184,11 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
   std::string open;
   for (const std::string& column : columns) {
     const std::string svg = scatter_svg(chart_of(runs, figure, column));
-    const std::string title_text = "<h3>" + escape_markup(axis_of(column).quantity) + "</h3>\n";
+    const std::string title_text = "<h3>" + escape_markup(column_axis(column).quantity) + "</h3>\n";
     std::string meaning = observables()[index_of_observable(column)].meaning;
     if (!meaning.empty()) meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
     const std::string one =
-        svg.empty() ? not_drawn(axis_of(column).quantity)
+        svg.empty() ? not_drawn(column_axis(column).quantity)
                     : "<figure>" + title_text + svg +
                           figures.caption(escape_markup(meaning) + "." +
                                           (replicated ? " Bands: one standard error to either side." : "")) +

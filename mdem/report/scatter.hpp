@@ -17,7 +17,6 @@ struct PointStyle {
 
 struct ScatterChart {
   LineChart chart;
-  bool x_decades = false, y_decades = false;  // logarithmic axes; points that are not positive are left out
   // Names beside the points of each line. Lists may be shorter than the lines, and names may be empty.
   std::vector<std::vector<std::string>> labels;
   std::vector<PointStyle> styles = {};  // one each for the first lines; used by lines that are points

@@ -46,8 +46,8 @@ std::string unit_of(const std::vector<ParameterSet>& sets, const char* key) {
   return "";
 }
 
-// The difference of a set from the first, as "+3.1 % (12 errors)". For sets of two potentials the error holds the spread
-// between potentials as well.
+// The difference of a set from the first, as "+3.1 % (12 errors)". For sets of two potentials the error holds the
+// spread between potentials as well.
 std::string difference(const ParameterSet& first, const ParameterSet& other, const char* key) {
   const Quantity *a = find_quantity(first, key), *b = find_quantity(other, key);
   if (!a || !b || std::fabs(a->value) < 1e-6) return "";

@@ -194,8 +194,8 @@ ScatterChart in_logarithms(ScatterChart scatter) {
     for (double& v : values) v = v > 0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
   };
   for (ChartLine& line : scatter.chart.lines) {
-    if (scatter.x_decades) take(line.x);
-    if (scatter.y_decades) take(line.y);
+    if (scatter.chart.x.decades) take(line.x);
+    if (scatter.chart.y.decades) take(line.y);
   }
   return scatter;
 }
@@ -414,8 +414,9 @@ Plot layout(const ScatterChart& scatter) {
   for (const ChartLine& line : chart.lines)
     for (const Stretch& s : stretches(line))
       for (const PagePoint& p : s) y.take(p.y);
-  plot.x = scatter.x_decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
-  plot.y = scatter.y_decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
+  plot.x = scatter.chart.x.decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
+  plot.y =
+      scatter.chart.y.decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
   double ticks = 0, names = 0;
   for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
   for (const ChartLine& line : chart.lines) names = std::max(names, text_width(line.name));
@@ -550,7 +551,7 @@ bool can_draw(const LineChart& chart) {
   return r.span() > 1e-9 * std::max(std::abs(r.low), std::abs(r.high));  // false where there are no points
 }
 
-std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, false, false, {}, {}}); }
+std::string chart_svg(const LineChart& chart) { return scatter_svg({chart, {}, {}}); }
 
 std::string scatter_svg(const ScatterChart& drawn) {
   const ScatterChart scatter = in_logarithms(drawn);

@@ -177,12 +177,16 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
     EXPECT_NE(svg.find(part), std::string::npos) << part;
   EXPECT_EQ(svg.find("var(--"), std::string::npos) << "few programs know variables";
   EXPECT_EQ(run("picture d -o a.svg").code, 2) << "it exists";
+  EXPECT_NE(svg.find(">time (ps)<"), std::string::npos);
+  ASSERT_EQ(run("picture d -o r.svg --curves torque_upper_nN_nm --x rotation_deg").code, 0);
+  EXPECT_NE(slurp(dir / "r.svg").find(">rotation (deg)<"), std::string::npos) << slurp(dir / "r.svg");
   EXPECT_EQ(run("picture d -o a.png --from 30,20").code, 0) << slurp(dir / "stderr.txt");
   EXPECT_EQ(slurp(dir / "a.png").substr(1, 3), "PNG");
   EXPECT_EQ(run("picture d -o a.pdf --from z --at 12").code, 0);
   EXPECT_EQ(slurp(dir / "a.pdf").substr(0, 4), "%PDF");
   EXPECT_FALSE(fs::exists(dir / "a.pdf.svg"));
-  for (const char* wrong : {"-o b.jpg", "-o b.svg --at 99", "-o b.svg --from left", "-o b.svg --curves nothing"})
+  for (const char* wrong : {"-o b.jpg", "-o b.svg --at 99", "-o b.svg --from left", "-o b.svg --curves nothing",
+                            "-o b.svg --x nothing"})
     EXPECT_EQ(run(std::string("picture d ") + wrong).code, 2) << wrong;
   EXPECT_FALSE(fs::exists(dir / "b.svg"));
 }

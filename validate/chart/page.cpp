@@ -202,13 +202,12 @@ std::string figure_html(const ChartScene& scene, const std::string& observable, 
   const Series s = series_of(rows);
   const std::vector<std::size_t> front = pareto_front(s.cost, s.error);
   ScatterChart scatter;
-  scatter.x_decades = scatter.y_decades = true;
   scatter.labels.resize(1);  // the front has no labels
   LineChart& chart = scatter.chart;
   const std::string against = kind == "md" ? "atoms" : "the finest model";
   chart.title = fmt::format("{}: error of the {} against cost", scene.title, observable_title(observable));
-  chart.x = {"CPU time per simulated ns", "s"};
-  chart.y = {"error of the " + observable_title(observable), "%"};
+  chart.x = {"CPU time per simulated ns", "s", false, true};
+  chart.y = {"error of the " + observable_title(observable), "%", false, true};
   chart.width = 520;
   chart.height = 340;
   chart.lines = {front_line(s, front)};

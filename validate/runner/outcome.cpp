@@ -84,8 +84,12 @@ Limit limit_of(const Json& j) {
   return l;
 }
 
-Json to_json(const ChartAxis& a) { return {{"quantity", a.quantity}, {"unit", a.unit}, {"whole", a.whole}}; }
-ChartAxis axis_of(const Json& j) { return {j.at("quantity"), j.at("unit"), j.at("whole")}; }
+Json to_json(const ChartAxis& a) {
+  return {{"quantity", a.quantity}, {"unit", a.unit}, {"whole", a.whole}, {"decades", a.decades}};
+}
+ChartAxis axis_of(const Json& j) {
+  return {j.at("quantity"), j.at("unit"), j.at("whole"), j.value("decades", false)};
+}
 
 Json to_json(const CaseFigure& f) {
   Json lines = Json::array(), bands = Json::array();

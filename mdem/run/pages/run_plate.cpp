@@ -14,6 +14,7 @@ std::string run_plate(const RunDirectory& dir, const PlateOptions& o) {
   in.shells = observer.shells;
   in.log = read_log(dir.log());
   in.curves = o.curves;
+  in.x = o.x;
   in.width = o.width;
   for (const StoredFrame& frame : frames_at(dir, prepared.topology, o.at, o.usual)) {
     const RopeObservation seen = observe(observer, scene, prepared.topology, frame.state);

@@ -14,6 +14,7 @@ struct PlateOptions {
   std::string from = "side";  // camera_from()
   bool sections = false;
   std::vector<std::vector<std::string>> curves;  // charts below, each of some columns of the log
+  std::string x;                                 // PlateInput::x
   double width = 1040, highest = 200;            // pixels, of the figure and of each state
 };
 

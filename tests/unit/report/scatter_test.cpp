@@ -14,9 +14,8 @@ using ::testing::Not;
 
 ScatterChart scatter(std::vector<double> x, std::vector<double> y) {
   ScatterChart s;
-  s.x_decades = s.y_decades = true;
-  s.chart.x = {"cost", "s"};
-  s.chart.y = {"error", "%"};
+  s.chart.x = {"cost", "s", false, true};
+  s.chart.y = {"error", "%", false, true};
   s.chart.lines = {{"models", std::move(x), std::move(y), 0}};
   s.chart.lines[0].points = true;
   return s;

@@ -132,14 +132,14 @@ CaseFigure spacing_figure(const Well& pair) {
     length.push_back(0.1 * k);
     const BeadLaw law(pair.distance, pair.energy, length.back(), BeadLaw::uncut);
     const Slide s = slide_first(law, length.back(), rows_at(pair.distance));
-    corrugation.push_back(std::log10(std::max(s.corrugation() / (6 * std::fabs(pair.energy)), 1e-12)));
+    corrugation.push_back(std::max(s.corrugation() / (6 * std::fabs(pair.energy)), 1e-12));
   }
   return case_figure(
       "Corrugation against the distance of beads", {"distance of beads along a tube", "nm"},
-      {"log10 of the corrugation over the well", ""},
+      {"corrugation over the well", "", false, true},
       "A bead law is as smooth as real tubes only if the beads are closer than half the distance of the tubes. The "
       "number of pairs grows with the square of the beads per length, and the time step falls.",
-      {theory_curve("registry of real tubes", 0.4, 2, [](double) { return -2.0; }),
+      {theory_curve("registry of real tubes", 0.4, 2, [](double) { return 1e-2; }),
        model_points("beads", length, corrugation, 2)});
 }
 

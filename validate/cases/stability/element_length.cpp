@@ -170,7 +170,7 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
   const double reach = oracle.line->density.cutoff();
   CaseFigure figure = case_figure(
       "Corrugation of a row of nodes", {"tube distance over node spacing", ""},
-      {"log10 of corrugation over the well", ""},
+      {"corrugation over the well", "", false, true},
       "The corrugation falls exponentially with the number of nodes per tube distance. The default spacing is a "
       "seventh of that distance.");
   int colour = 0;
@@ -187,14 +187,14 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
     result.limits.push_back({"node spacing over tube distance, corrugation 1e-3, " + where, found / distance,
                              theory / distance, "", Limit::Guard::told,
                              "fewer nodes than 1e-3 takes; the default has more"});
-    std::vector<double> at, log;
+    std::vector<double> at, corrugation;
     for (double d = 0.4; d < 1.05; d += 0.1) {
       at.push_back(distance / d);
-      log.push_back(std::log10(seen(d)));
+      corrugation.push_back(seen(d));
     }
     figure.chart.lines.push_back(theory_curve("Poisson sum, " + where, at.back(), at.front(), colour,
-                                              [&](double x) { return std::log10(predicted(distance / x)); }));
-    figure.chart.lines.push_back(model_points("sliding element", at, log, colour));
+                                              [&](double x) { return predicted(distance / x); }));
+    figure.chart.lines.push_back(model_points("sliding element", at, corrugation, colour));
     ++colour;
   }
   result.figures.push_back(figure);
