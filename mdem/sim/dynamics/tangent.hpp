@@ -1,0 +1,46 @@
+// The tangent of a state: how forces and torques change with small motions of all elements,
+//
+//   f(u, u') = f - K u - C u',     u = (displacement, rotation vector in the space frame) of every element,
+//
+// loads included, by central differences. Memories of force terms stay as they are. Elements whose forces reach no
+// common element move in one evaluation: some hundred evaluations give all columns. A. R. Curtis, M. J. D. Powell,
+// J. K. Reid, IMA J. Appl. Math. 13, 117 (1974), DOI 10.1093/imamat/13.1.117.
+//
+// The rotation vector of an element is that of one turn from the state, so that K is symmetric where every torque,
+// loads included, vanishes and all forces have a potential; otherwise its antisymmetric part is that of half the
+// torque.
+//
+// Units nm, ps, eV, rad. Unknowns stand element by element, six each.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "sim/dynamics/simulation.hpp"
+
+namespace ropewalk {
+
+struct Tangent {
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  Matrix stiffness, damping;  // K, C
+  Eigen::VectorXd mass;       // of each unknown: mass or inertia
+  Eigen::VectorXd force;      // of the state, its velocities left out
+  std::vector<int> order;     // the elements along the longest extent of the state
+  long evaluations = 0;
+  // By how much K and C miss the change of the forces along a motion of all elements at once, of that change: shows
+  // force terms that reach farther than the neighbour list says.
+  double error = 0;
+};
+
+// The state of the simulation, in double precision whatever the scene has. `step`: nm, of the differences; the
+// turns are as large at the radius of the tube.
+Tangent tangent_of(const Simulation& simulation, double step = 1e-5);
+
+// The state with each element moved by u, and turned; with the velocities of u' (null: at rest).
+State moved(const State& state, const Eigen::VectorXd& u, const Eigen::VectorXd* velocity = nullptr);
+
+// For each unknown whether the constraints leave it free, at rest as they are. None where a constraint ties several
+// unknowns together.
+std::optional<std::vector<char>> free_unknowns(const Simulation& simulation);
+
+}  // namespace ropewalk
