@@ -60,6 +60,7 @@ struct Verbs {
   SweepArguments sweep;
   ThresholdArguments threshold;
   RestArguments rest;
+  ModesArguments modes;
   GatherArguments gather;
   PlanArguments plan;
   ExportArguments to_lammps;
@@ -357,6 +358,34 @@ void add_rest(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = rest_command(v.rest); });
 }
 
+void add_modes(CLI::App& app, Verbs& v) {
+  CLI::App* c =
+      app.add_subcommand("modes", "Which motions of a state at rest grow, at what rate, and what they move");
+  c->add_option("path", v.modes.path,
+                "Directory of a run, whose newest checkpoint counts, or a scene (TOML) at its start")
+      ->required()
+      ->check(CLI::ExistingPath);
+  c->add_option("--count", v.modes.count, "Eigenvalues to find")
+      ->capture_default_str()
+      ->check(whole_number(1, 200));
+  c->add_option("--shift", v.modes.shift, "Those nearest to this rate (1/ns), which should be above the largest")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1e5));
+  c->add_option(
+       "--most-left", v.modes.most_left,
+       "Force (eV/nm) that may be left on an element at rest [default: a five hundredth of the largest load]")
+      ->check(number_within(Bounds::positive()));
+  c->add_option("--csv", v.modes.csv, "Write the table to this file");
+  c->add_option("--frame", v.modes.frame,
+                "Write the state moved along the leading mode to this file (CSV), from which a scene can start");
+  c->add_option("--amplitude", v.modes.amplitude, "How far its farthest element is moved, nm")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-9, 1.0));
+  c->add_option("--threads", v.modes.threads, "Threads [default: all cores]")->check(thread_range());
+  c->add_flag("--force", v.modes.force, "Replace existing files");
+  c->callback([&v] { v.code = modes_command(v.modes); });
+}
+
 void add_gather(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("gather", "One table (CSV) of all points of a campaign, at their ends");
   c->add_option("dir", v.gather.dir, "Directory of the campaign")->required();
@@ -530,6 +559,7 @@ int main(int argc, char** argv) {
   add_sweep(app, verbs);
   add_threshold(app, verbs);
   add_rest(app, verbs);
+  add_modes(app, verbs);
   add_gather(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);

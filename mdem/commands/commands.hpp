@@ -101,6 +101,18 @@ struct RestArguments {
 };
 int rest_command(const RestArguments& arguments);
 
+struct ModesArguments {
+  std::string path;  // a scene, or the directory of a run
+  int count = 8;
+  double shift = 50;        // 1/ns
+  double most_left = -1;    // eV/nm, force that may be left; less than zero: as at_rest() says
+  std::string csv, frame;   // files to write; empty: none
+  double amplitude = 0.02;  // nm, of the frame
+  int threads = 0;
+  bool force = false;
+};
+int modes_command(const ModesArguments& arguments);
+
 struct ErrorsArguments {
   std::string dir;
   int jobs = 0;  // runs at a time; 0: one for each core

@@ -84,12 +84,69 @@ TEST_F(Cli, WrongCommandLinesAreOneLine) {
   for (const char* line :
        {"", "twist", "run", "run x.toml", "run nowhere.toml --out d", "bench nowhere.toml", "observe nowhere",
         "observe", "resume nowhere", "report nowhere", "energy none.csv --parameters cnt-10-10-paper", "new",
-        "bench", "bench film-1e9", "new x --kind cable", "check nowhere.toml", "run x --out y --threads 0"}) {
+        "modes", "modes nowhere.toml", "bench", "bench film-1e9", "new x --kind cable", "check nowhere.toml",
+        "run x --out y --threads 0"}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
     EXPECT_EQ(o.err.rfind("ropewalk: ", 0), 0u) << o.err;
   }
+}
+
+// A chain at rest swings in all of its motions, or they are neutral; the state moved along one of them starts a
+// run.
+TEST_F(Cli, ModesOfAChainAtRest) {
+  const std::string chain =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 20\n";
+  spit(dir / "chain.toml", chain + "[run]\nduration_ps = 1\n");
+  const Outcome o = run("modes chain.toml --count 20 --csv modes.csv --frame moved.csv --amplitude 0.01");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("20 elements"), std::string::npos) << o.out;
+  std::istringstream lines(slurp(dir / "modes.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line.rfind("rate_per_ns,frequency_GHz,residual_per_ns,neutral,sideways", 0), 0u) << line;
+  int swinging = 0, neutral = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    double rate = 0, frequency = 0, residual = 0, flag = 0;
+    char comma;
+    cells >> rate >> comma >> frequency >> comma >> residual >> comma >> flag;
+    flag > 0 ? ++neutral : ++swinging;
+    if (flag == 0) EXPECT_LT(std::fabs(rate), 1e-3 * 2 * 3.14159265 * frequency) << line;
+  }
+  EXPECT_GT(swinging, 1);
+  EXPECT_GT(neutral, 3);
+  spit(dir / "moved.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[state]\nfile = \"moved.csv\"\n"
+       "[run]\nduration_ps = 1\n");
+  EXPECT_EQ(run("run moved.toml --out d --quiet").code, 0);
+}
+
+TEST_F(Cli, ModesOfWhatIsNotAtRestAreRefused) {
+  const std::string head = "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n",
+                    chain = head + "[chain]\nelements = 20\n";
+  const auto refused = [&](const std::string& scene, const std::string& why, const std::string& options = "") {
+    spit(dir / "s.toml", scene);
+    const Outcome o = run("modes s.toml " + options);
+    EXPECT_EQ(o.code, 2) << scene;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    EXPECT_NE(o.err.find(why), std::string::npos) << scene << o.err;
+  };
+  const std::string moment = "[twist]\nmoment_nN_nm = 30\n", held = moment + "rate_nN_nm_per_ps = 0\n";
+  refused(chain + moment + "rate_nN_nm_per_ps = 1\n", "the loads still change at 0 ps");
+  refused(chain + held + "hold_ps = 1\n", "the state is not at rest");
+  refused(chain + held + "hold_ps = 1\nlateral = \"held\"\n", "ties several elements together");
+  refused(chain + held + "hold_ps = 1\ngeometric_only = true\n", "twist.geometric_only");
+  refused(chain + "[start]\ntemperature_K = 300\n[run]\nduration_ps = 1\n", "one moves by");
+  refused(chain + "[thermostat]\ntemperature_K = 300\n[run]\nduration_ps = 1\n", "thermostat");
+  refused(chain + "[damping]\npfc_local = 0.7\n[run]\nduration_ps = 1\n", "damping.pfc_local");
+  refused(chain + "[run]\nduration_ps = 1\n", "--csv: s.toml exists", "--csv s.toml");
+  refused(chain + "[run]\nduration_ps = 1\n", "--count", "--count 0");
+  fs::create_directory(dir / "empty");
+  const Outcome empty = run("modes empty");
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_EQ(std::count(empty.err.begin(), empty.err.end(), '\n'), 1) << empty.err;
 }
 
 TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {

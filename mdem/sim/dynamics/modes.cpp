@@ -18,6 +18,8 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using Matrix = Tangent::Matrix;
 
+constexpr double least_neutral = 1e-4;  // 1/ps
+
 // The free unknowns, in the order of the elements along the longest extent: matrices of ropes are then bands.
 class FreeUnknowns {
  public:
@@ -190,41 +192,24 @@ double largest_free_force(const Topology& topology, const VectorXd& force, const
   return largest;
 }
 
-Settled settled(const Simulation& simulation, const std::vector<char>& free, double force, int most_steps,
-                const std::function<void(int, double)>& progress) {
-  constexpr double farthest = 0.05;  // nm, of an element in one step
-  constexpr double slowest = 2e-4;   // 1/ps: motions that cost next to nothing are held by inertia of this rate
-  Settled out{simulation.state(), 0, 0, 0, false};
-  for (;; ++out.steps) {
-    const Simulation now(simulation.topology(), simulation.interaction(), simulation.loads(), out.state,
-                         simulation.time_step(), 0, simulation.stepping());
-    const Tangent t = tangent_of(now);
-    out.force = largest_free_force(now.topology(), t.force, free);
-    progress(out.steps, out.force);
-    out.at_rest = out.force <= force;
-    if (out.at_rest || out.steps == most_steps) return out;
-    const FreeUnknowns unknowns(free, t.order);
-    const Quadratic q(t, unknowns);
-    Matrix held(q.size(), q.size());
-    held.setIdentity();
-    held.diagonal() = slowest * slowest * q.mass;
-    VectorXd u = unknowns.spread(Decomposition(held + q.stiffness).solve(unknowns.chosen(t.force)));
-    double most = 0;
-    for (int e = 0; e < now.topology().elements(); ++e) {
-      const Eigen::Index row = 6 * static_cast<Eigen::Index>(e);
-      most = std::max({most, u.segment<3>(row).norm(),
-                       now.topology().type_of_element(e).radius * u.segment<3>(row + 3).norm()});
-    }
-    const double part = std::min(1.0, farthest / most);
-    out.moved += part * most;
-    out.state = moved(out.state, part * u);
-  }
-}
+double neutral_below(const Modes& found) { return std::max(least_neutral, 3 * found.resolution); }
 
+// A band as wide as the elements that reach one another lie apart in the order of the decomposition; three times as
+// many numbers as in the half of it, since rows are exchanged.
 double bytes_of_decomposition(const Simulation& simulation) {
-  const Topology& topology = simulation.topology();
-  (void)topology;
-  return 0;
+  const std::vector<int> order = order_along(simulation.state());
+  std::vector<int> place(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  double sum = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    int farthest = 1;
+    if (simulation.list().cutoff > 0)
+      simulation.list().for_neighbours(static_cast<int>(i), [&](int j) {
+        farthest = std::max(farthest, std::abs(place[static_cast<std::size_t>(j)] - place[i]));
+      });
+    sum += farthest;
+  }
+  return 3 * 36 * sum * (sizeof(double) + sizeof(int));
 }
 
 }  // namespace ropewalk

@@ -14,7 +14,6 @@
 #pragma once
 
 #include <complex>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -45,23 +44,15 @@ struct Modes {
   std::size_t nonzeros = 0;  // of the decomposition
 };
 
+// 1/ps: the real and imaginary parts of motions that change nothing, such as moves of the whole, are below this.
+double neutral_below(const Modes& found);
+
 // `free`: of each unknown (free_unknowns). Throws std::runtime_error where the decomposition fails, or too few of
 // the eigenvalues converge.
 Modes modes_of(const Tangent& tangent, const std::vector<char>& free, const ModeSearch& search);
 
 // Bytes of the decomposition, by the elements within reach of one another; for a warning before it is tried.
 double bytes_of_decomposition(const Simulation& simulation);
-
-// The state of rest near that of a simulation, by Newton's method: it is found whether it is stable or not.
-struct Settled {
-  State state;
-  double force = 0;  // eV/nm, the largest left; torques over radius
-  double moved = 0;  // nm, of the element that went farthest, in all
-  int steps = 0;
-  bool at_rest = false;
-};
-Settled settled(const Simulation& simulation, const std::vector<char>& free, double force, int most_steps,
-                const std::function<void(int step, double force)>& progress);
 
 // eV/nm: the largest force on a free unknown, torques over the radius.
 double largest_free_force(const Topology& topology, const Eigen::VectorXd& force, const std::vector<char>& free);

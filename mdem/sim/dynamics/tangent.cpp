@@ -84,20 +84,6 @@ std::vector<std::vector<int>> groups_of(const Graph& graph) {
   return groups;
 }
 
-std::vector<int> along_the_longest(const State& s) {
-  Vector3 mean = Vector3::Zero();
-  for (std::size_t i = 0; i < s.size(); ++i) mean += s.position[i] / static_cast<double>(s.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < s.size(); ++i) spread += (s.position[i] - mean) * (s.position[i] - mean).transpose();
-  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
-  std::vector<int> order(s.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return s.position[static_cast<std::size_t>(a)].dot(axis) < s.position[static_cast<std::size_t>(b)].dot(axis);
-  });
-  return order;
-}
-
 class Differences {
  public:
   Differences(const Simulation& s, double step) : s_(s), in_(s.interaction()), rest_(s.state()), step_(step) {
@@ -118,7 +104,7 @@ class Differences {
         out.mass.segment<6>(row_of(e)) << Vector3::Constant(type.mass), Vector3::Constant(type.inertia);
       }
     out.force = model_forces(rest_) + load_forces(rest_);
-    out.order = along_the_longest(rest_);
+    out.order = order_along(rest_);
     const Graph graph = who_acts_on_whom(topology, s_.list(), s_.list().cutoff > 0);
     Triplets stiffness, damping;
     for (const std::vector<int>& group : groups_of(graph))
@@ -216,6 +202,20 @@ class Differences {
 };
 
 }  // namespace
+
+std::vector<int> order_along(const State& s) {
+  Vector3 mean = Vector3::Zero();
+  for (std::size_t i = 0; i < s.size(); ++i) mean += s.position[i] / static_cast<double>(s.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < s.size(); ++i) spread += (s.position[i] - mean) * (s.position[i] - mean).transpose();
+  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  std::vector<int> order(s.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return s.position[static_cast<std::size_t>(a)].dot(axis) < s.position[static_cast<std::size_t>(b)].dot(axis);
+  });
+  return order;
+}
 
 State moved(const State& state, const VectorXd& u, const VectorXd* velocity) {
   ROPEWALK_EXPECTS(u.size() == row_of(static_cast<int>(state.size())));

@@ -25,7 +25,7 @@ struct Tangent {
   Matrix stiffness, damping;  // K, C
   Eigen::VectorXd mass;       // of each unknown: mass or inertia
   Eigen::VectorXd force;      // of the state, its velocities left out
-  std::vector<int> order;     // the elements along the longest extent of the state
+  std::vector<int> order;     // order_along() the state
   long evaluations = 0;
   // By how much K and C miss the change of the forces along a motion of all elements at once, of that change: shows
   // force terms that reach farther than the neighbour list says.
@@ -38,6 +38,9 @@ Tangent tangent_of(const Simulation& simulation, double step = 1e-5);
 
 // The state with each element moved by u, and turned; with the velocities of u' (null: at rest).
 State moved(const State& state, const Eigen::VectorXd& u, const Eigen::VectorXd* velocity = nullptr);
+
+// The elements along the longest extent of a state.
+std::vector<int> order_along(const State& state);
 
 // For each unknown whether the constraints leave it free, at rest as they are. None where a constraint ties several
 // unknowns together.

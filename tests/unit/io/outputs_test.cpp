@@ -9,6 +9,7 @@
 #include "io/frames/vtp.hpp"
 #include "io/limits_file.hpp"
 #include "io/manifest.hpp"
+#include "io/mode_table.hpp"
 #include "io/tube_table.hpp"
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
@@ -35,6 +36,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`events.csv`"), columns_markdown(event_columns()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
+  EXPECT_EQ(outputs_table("`ropewalk modes --csv`"), columns_markdown(mode_columns()));
   EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));
