@@ -371,10 +371,7 @@ void add_modes(CLI::App& app, Verbs& v) {
   c->add_option("--shift", v.modes.shift, "Those nearest to this rate (1/ns), which should be above the largest")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e5));
-  c->add_option(
-       "--most-left", v.modes.most_left,
-       "Force (eV/nm) that may be left on an element at rest [default: a five hundredth of the largest load]")
-      ->check(number_within(Bounds::positive()));
+  c->add_flag("--anyway", v.modes.anyway, "Also for a state that does not rest: its motions as if it stood still");
   c->add_option("--csv", v.modes.csv, "Write the table to this file");
   c->add_option("--frame", v.modes.frame,
                 "Write the state moved along the leading mode to this file (CSV), from which a scene can start");

@@ -105,7 +105,7 @@ struct ModesArguments {
   std::string path;  // a scene, or the directory of a run
   int count = 8;
   double shift = 50;        // 1/ns
-  double most_left = -1;    // eV/nm, force that may be left; less than zero: as at_rest() says
+  bool anyway = false;      // also where it does not rest
   std::string csv, frame;   // files to write; empty: none
   double amplitude = 0.02;  // nm, of the frame
   int threads = 0;

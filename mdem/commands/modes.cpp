@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double per_ns = 1000;       // 1/ps in 1/ns
 constexpr double least_force = 1e-3;  // eV/nm
-constexpr double of_the_load = 0.002;
+constexpr double of_the_load = 0.01;
 constexpr double fastest_rest = 1e-2;  // nm/ps
 constexpr double largest_tangent_error = 1e-4;
 
@@ -162,13 +162,13 @@ int modes_command(const ModesArguments& a) {
                "a rope in which none slips or breaks.\n");
   const Tangent tangent = tangent_of(s);
   const double force = largest_free_force(s.topology(), tangent.force, free), speed = largest_speed(s);
-  const double most_left = a.most_left > 0 ? a.most_left : std::max(least_force, of_the_load * largest_load(s));
-  if (force > most_left || speed > fastest_rest)
+  const double most_left = std::max(least_force, of_the_load * largest_load(s));
+  if (!a.anyway && (force > most_left || speed > fastest_rest))
     throw refuse(a.path, "",
                  fmt::format("the state is not at rest: {:.2g} eV/nm are left on an element, of at most {:.2g}, "
                              "and one moves by {:.2g} nm/ps, of at most {:g}",
                              force, most_left, speed, fastest_rest),
-                 "hold the run longer, or with more viscosity; --most-left allows for more force");
+                 "hold the run longer, or with more viscosity; --anyway takes it as if it stood still");
   if (tangent.error > largest_tangent_error)
     throw refuse(a.path, "",
                  fmt::format("the tangent misses {:.1e} of the change of the forces: a force term reaches farther "

@@ -113,7 +113,7 @@ TEST_F(Cli, ModesOfAChainAtRest) {
     char comma;
     cells >> rate >> comma >> frequency >> comma >> residual >> comma >> flag;
     flag > 0 ? ++neutral : ++swinging;
-    if (flag == 0) EXPECT_LT(std::fabs(rate), 1e-3 * 2 * 3.14159265 * frequency) << line;
+    EXPECT_TRUE(flag > 0 || (rate < 0 && frequency > 0)) << line;
   }
   EXPECT_GT(swinging, 1);
   EXPECT_GT(neutral, 3);

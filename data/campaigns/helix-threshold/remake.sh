@@ -3,7 +3,8 @@
 set -eu
 cd "$(dirname "$0")"
 program=${1:-ropewalk}
-"$program" threshold 19-tubes.toml --out runs/19-tubes
-"$program" threshold sizes.toml --out runs/sizes
-cp runs/sizes/thresholds.csv sizes-thresholds.csv
+for search in 19-tubes sizes-7 sizes-19 sizes-37 sizes-61 sizes-91 viscosity wait-7 wait-19; do
+  "$program" threshold "$search.toml" --out "runs/$search"
+done
+./join.py runs sizes-thresholds.csv sizes-trials.csv
 cp runs/19-tubes/thresholds.csv runs/19-tubes/trials.csv runs/19-tubes/thresholds.html .
