@@ -12,6 +12,7 @@
 #include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
 #include "run/threads.hpp"
+#include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 
 namespace ropewalk {
