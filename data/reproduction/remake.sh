@@ -12,7 +12,7 @@ for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 video; do
 done
 "$program" threshold fig5.toml --out runs/fig5
 cp runs/fig5/thresholds.csv fig5-thresholds.csv
-cp runs/fig5/trials.csv fig5-trials.csv
+cp runs/fig5/trials.csv fig5-gentle-trials.csv
 cp runs/fig5/thresholds.html fig5.html
 for theory in fig5-theory fig5-viscosity; do
   "$program" threshold $theory.toml --out runs/$theory --theory
