@@ -8,7 +8,7 @@ name=$(basename "$scene" .toml)
 mkdir -p runs
 if [ ! -f "runs/$name-planned.toml" ]; then
   rm -f "runs/$name-finest.toml"
-  "$program" plan "$scene" -j 2 "$@" -o "runs/$name-planned.toml" --finest "runs/$name-finest.toml" >"runs/$name.txt" 2>&1
+  "$program" plan "$scene" -j 2 --pilot-seconds 120 "$@" -o "runs/$name-planned.toml" --finest "runs/$name-finest.toml" >"runs/$name.txt" 2>&1
 fi
 cp "$scene" "runs/$name-default.toml"
 for model in planned default finest; do

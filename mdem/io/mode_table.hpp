@@ -1,4 +1,4 @@
-// The table of `ropewalk modes`: one line for each motion.
+// The table that `ropewalk modes` prints: each line describes one mode.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ using Eigen::Vector3cd;
 
 constexpr double least_sideways = 0.01;  // of the kinetic energy, for a form
 
-// The real parts of the deflections, across an axis, in the plane in which they are largest.
+// The components of the deflections along their main direction, in which the sum of their squares is largest.
 std::vector<double> in_main_plane(const std::vector<Vector3>& deflections) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3& d : deflections) spread += d * d.transpose();

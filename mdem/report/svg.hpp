@@ -56,7 +56,7 @@ struct ChartBand {
 struct ChartAxis {
   std::string quantity, unit;  // the unit may be empty
   bool whole = false;          // ticks at integers only
-  bool decades = false;        // logarithmic; points that are not positive are left out
+  bool decades = false;        // the axis is logarithmic, and the chart omits points that are not positive
 };
 
 struct LineChart {

@@ -13,7 +13,7 @@ struct PlateOptions {
   std::size_t usual = 4;
   std::string from = "side";  // camera_from()
   bool sections = false;
-  std::vector<std::vector<std::string>> curves;  // charts below, each of some columns of the log
+  std::vector<std::vector<std::string>> curves;  // columns of the log: each group makes one chart
   std::string x;                                 // PlateInput::x
   double width = 1040, highest = 200;            // pixels, of the figure and of each state
 };

@@ -23,8 +23,8 @@ namespace ropewalk {
 
 struct Mode {
   std::complex<double> rate;  // s, 1/ps; of a pair of conjugates the one with the positive imaginary part
-  Eigen::VectorXcd
-      shape;  // of all unknowns, of unit kinetic energy: u* M u = 1; turned so that its real part is largest
+  // The eigenvector u, scaled to u* M u = 1. Its complex phase makes the real part as large as possible.
+  Eigen::VectorXcd shape;
   double residual = 0;  // 1/ps: the error of s that the forces left over stand for
 };
 

@@ -147,7 +147,8 @@ class Differences {
     return out;
   }
 
-  // Of the forces per unit of this unknown of all elements of a group, or of its velocity.
+  // The derivative of all forces by one unknown (or by its velocity), which changes in all elements of the group at
+  // once.
   template <class ForcesOf>
   VectorXd difference(const std::vector<int>& group, int unknown, bool speeds, const ForcesOf& forces) {
     const double by = (speeds ? speed_step : step_) / (unknown < 3 ? 1 : s_.topology().largest_radius());

@@ -27,8 +27,8 @@ struct Tangent {
   Eigen::VectorXd force;      // of the state, its velocities left out
   std::vector<int> order;     // order_along() the state
   long evaluations = 0;
-  // By how much K and C miss the change of the forces along a motion of all elements at once, of that change: shows
-  // force terms that reach farther than the neighbour list says.
+  // The relative error of K and C along one motion of all elements. The error is large where a force term reaches
+  // farther than the neighbour list.
   double error = 0;
 };
 
