@@ -95,9 +95,7 @@ bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
 
 // In a slice a link and its images are one: that of two own elements, or of an own one and an image above it.
 bool stands_for_images(const Topology& topology, int i, int j) {
-  const auto above = [&](int e) {
-    return topology.is_image(e) && topology.image_above(topology.original_of(e)) == e;
-  };
+  const auto above = [&](int e) { return topology.original_of(e) < e; };
   return topology.images == 0 || (!topology.is_image(i) && (!topology.is_image(j) || above(j))) ||
          (!topology.is_image(j) && above(i));
 }
