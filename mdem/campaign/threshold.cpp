@@ -343,10 +343,19 @@ double PhasePoint::winding() const {
   return median(all);
 }
 
+double PhasePoint::winding_or_free() const {
+  const double wound = winding();
+  return std::isfinite(wound) ? wound : 1;
+}
+
+double PhasePoint::theory_windings() const {
+  const double moment = kinetic_theory();
+  return std::isfinite(moment) ? theory->windings(moment * units::nN_nm, winding_or_free()) : unknown;
+}
+
 double PhasePoint::kinetic_theory() const {
   if (kinetic_) return *kinetic_;
-  const double wound = winding();
-  const double moment = theory ? theory->moment_to_pass(passing, std::isfinite(wound) ? wound : 1) : 0;
+  const double moment = theory ? theory->moment_to_pass(passing, winding_or_free()) : 0;
   kinetic_ = moment > 0 ? moment / units::nN_nm : unknown;
   return *kinetic_;
 }

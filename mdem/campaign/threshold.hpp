@@ -95,6 +95,8 @@ struct PhasePoint {
   // passes within the time of the scene, of a rope with the winding of its runs, or with 1 as long as there is
   // none; and the static moment of a rope whose tubes are glued.
   double static_theory() const, kinetic_theory() const, glued_theory() const;
+  // Turns of the helix that grows under kinetic_theory(); nan: none.
+  double theory_windings() const;
   // The median over the runs of f of plan/sliding_rope.hpp; nan: no run says.
   double winding() const;
   // The median of rates over those of theory at the same moment and winding, and the number of runs that have one.
@@ -103,6 +105,7 @@ struct PhasePoint {
 
  private:
   std::vector<double> rate_ratios() const;
+  double winding_or_free() const;          // 1 as long as no run says
   mutable std::optional<double> kinetic_;  // which takes some tenths of a second
 };
 std::vector<PhasePoint> phase_points(const CampaignDirectory& dir, const Sweep& sweep,

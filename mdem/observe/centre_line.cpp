@@ -210,14 +210,28 @@ double turned_back(const std::vector<Vector3>& line) {
 // line: right for a helix of any number of turns with free ends. On ideal helices of 1.5 turns and more with
 // constant, sine or plateau envelope this is within 0.15 turns; a plane curve has none. Below 1.5 turns helix
 // and bow are not well apart (1 turn reads as 1.0 to 1.4).
-double chord_windings(const std::vector<Vector3>& line) {
+LineHelix helix_of(const std::vector<Vector3>& line) {
+  LineHelix out;
   const std::vector<Vector2d> lateral = deviations(line);
-  if (lateral.size() < 3) return 0.0;
+  if (lateral.size() < 3) return out;
   const double straight = straight_fraction * largest_norm(lateral);
   int bent_steps = 0;
   for (std::size_t k = 0; k + 1 < lateral.size(); ++k)
     bent_steps += 0.5 * (lateral[k] + lateral[k + 1]).norm() > straight;
-  return azimuth_rate(detrended(lateral)) * bent_steps / (2.0 * units::pi);
+  const std::vector<Vector2d> from_axis = detrended(lateral);
+  const double turns_per_step = azimuth_rate(from_axis) / (2.0 * units::pi);
+  double squares = 0, weight = 0;
+  for (std::size_t k = 0; k < lateral.size(); ++k) {
+    if (lateral[k].norm() <= straight) continue;
+    squares += from_axis[k].squaredNorm();
+    weight += 1;
+  }
+  out.windings = turns_per_step * bent_steps;
+  if (weight > 0) out.radius = std::sqrt(squares / weight);
+  if (std::fabs(out.windings) >= 0.5)
+    out.pitch =
+        (line.back() - line.front()).norm() / static_cast<double>(line.size() - 1) / std::fabs(turns_per_step);
+  return out;
 }
 
 }  // namespace ropewalk

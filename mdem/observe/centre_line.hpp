@@ -1,6 +1,7 @@
 // The centre line of a rope: mean position of the elements of equal index.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "sim/state/state.hpp"
@@ -48,7 +49,12 @@ double turned_back(const std::vector<Vector3>& line);
 // The part of v across a unit axis.
 inline Vector3 normal_part(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
 
-// Turns about the axis of the helix, positive for a right-handed one; see the .cpp for the estimator.
-double chord_windings(const std::vector<Vector3>& line);
+// The helix that a line makes about its axis; see the .cpp for the estimator.
+struct LineHelix {
+  double windings = 0;  // turns about the axis, positive for a right-handed helix
+  double radius = 0;    // nm: root mean square of the distances from the axis, where the line is not straight
+  double pitch = std::numeric_limits<double>::quiet_NaN();  // nm along the axis for a turn; nan below half a turn
+};
+LineHelix helix_of(const std::vector<Vector3>& line);
 
 }  // namespace ropewalk

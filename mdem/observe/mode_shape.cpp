@@ -124,7 +124,7 @@ ModeShape shape_of(const Topology& topology, const State& state, const Eigen::Ve
   for (int k = 0; k < length; ++k)
     drawn.push_back(span * k / (length - 1.0) * chord +
                     1e-3 * span / most * normal_part(sideways[static_cast<std::size_t>(k)], chord));
-  out.windings = chord_windings(drawn);
+  out.windings = helix_of(drawn).windings;
   out.half_waves = half_waves_of(in_main_plane(sideways));
   return out;
 }

@@ -170,7 +170,12 @@ RopeObservation observe(const Topology& tubes, const State& state, const RopeShe
   out.middle_amplitude = chord_amplitude(middle_of(line.points));
   out.writhe = writhe_of(line.points);
   out.turned_back = turned_back(line.points);
-  if (out.amplitude > scale) out.windings = chord_windings(line.points);
+  if (out.amplitude > scale) {
+    const LineHelix helix = helix_of(line.points);
+    out.windings = helix.windings;
+    out.helix_radius = helix.radius;
+    out.pitch = helix.pitch;
+  }
   out.centre_line = line.points;
   out.middle = cross_section(tubes, state, shells, n / 2, neighbour_radius, spacing);
   return out;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "model/parameters.hpp"
@@ -55,8 +56,11 @@ struct RopeObservation {
   double turned_back = 0;       // the part of its length that runs against the chord
   double windings = 0;          // turns of the centre line about its chord (helix), mean rate times length;
                                 // 0 where the amplitude is below one spacing
-  std::vector<double> radius_profile;  // nm: outer radius, per element index
-  std::vector<Vector3> centre_line;    // nm
+  double helix_radius =
+      std::numeric_limits<double>::quiet_NaN();             // nm: LineHelix of the centre line; nan where the
+  double pitch = std::numeric_limits<double>::quiet_NaN();  // amplitude is below one spacing
+  std::vector<double> radius_profile;                       // nm: outer radius, per element index
+  std::vector<Vector3> centre_line;                         // nm
   CrossSection middle;
   int kinked = 0;                 // bonds whose curvature exceeds the set's kink limit
   int overtwisted = 0;            // bonds whose r * twist per length exceeds the set's limit

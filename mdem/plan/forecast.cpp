@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "plan/features.hpp"
+#include "plan/sliding_rope.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/watch.hpp"
 
@@ -31,6 +32,22 @@ std::string gentle_ramp(const Scene& scene, double part) {
 }
 
 }  // namespace
+
+std::optional<std::string> helix_ahead(const Scene& scene, const Prepared& p) {
+  const std::optional<HelixTheory> theory = helix_theory(scene, p);
+  const MomentRamp* load = scene.moment_ramp();
+  if (!theory || !load || load->moment <= theory->static_moment) return {};
+  std::string words = fmt::format(
+      "By theory a straight rope of tubes that slide becomes a helix from {:.3g} nN nm on each tube on.",
+      theory->static_moment / theory->tubes_in_unit / units::nN_nm);
+  constexpr double winding = 1;
+  if (const double rate = theory->growth(load->moment, winding); rate > 0)
+    words += fmt::format(
+        " Under {:.3g} nN nm its amplitude grows by a factor of e in {:.3g} ps, with {:.2g} turns, if the rope "
+        "turns by ML/EI.",
+        load->of_each(p.topology.tubes()) / units::nN_nm, 1 / rate, theory->windings(load->moment, winding));
+  return words;
+}
 
 double expected_shock(const Scene& scene, const Prepared& p) {
   const double twist = twist_energy_of(scene, p.topology);

@@ -14,6 +14,10 @@ namespace ropewalk {
 // there.
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
 
+// Where a moment on each tube makes a helix of the straight rope, by plan/sliding_rope.hpp. None: it does not, or
+// the theory is not for this scene.
+std::optional<std::string> helix_ahead(const Scene& scene, const Prepared& prepared);
+
 // An upper estimate of limits.shock. If a rope under [twist] wound by ML/EI as its moment M rises, its tubes at the
 // distance rho from the axis would move with rho (L/EI)(dM/dt)(s/L - 1/2): kinetic energy m rho^2 L (L/EI
 // dM/dt)^2/24. It lags, and then winds up to twice as fast, so that four times that is taken: runs of 7, 19 and 91

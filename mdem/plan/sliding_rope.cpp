@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "observe/centre_line.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/source.hpp"
 
@@ -99,9 +100,9 @@ ComplexMatrix slip_of(double turn, int waves) {
           weighted_even * odd.transpose() - weighted_odd * even.transpose()};
 }
 
-// The largest real part of lambda with lambda^2 c + lambda z D c + (K - i mu G) c = 0, in units of L^2 (m/B)^1/2:
-// that of the real matrix with the real and the imaginary parts of c, which has each lambda and its conjugate.
-double fastest(double mu, double z, double winding) {
+// lambda^2 c + lambda z D c + (K - i mu G) c = 0, in units of L^2 (m/B)^1/2: the real matrix of the real and the
+// imaginary parts of c and of its rates, which has each lambda and its conjugate.
+MatrixXd system_of(double mu, double z, double winding) {
   const Basis& b = basis();
   const int waves = waves_of(mu);
   const auto inverse = b.norm.head(waves).cwiseInverse().asDiagonal();
@@ -120,7 +121,47 @@ double fastest(double mu, double z, double winding) {
     block(2, 3) = z * (inverse * slip.imaginary);
     block(3, 2) = -z * (inverse * slip.imaginary);
   }
-  return Eigen::EigenSolver<MatrixXd>(system, false).eigenvalues().real().maxCoeff();
+  return system;
+}
+double fastest(double mu, double z, double winding) {
+  return Eigen::EigenSolver<MatrixXd>(system_of(mu, z, winding), false).eigenvalues().real().maxCoeff();
+}
+
+// The fastest growing motion as a line of the length 1 that is nearly straight.
+std::vector<Vector3> fastest_line(double mu, double z, double winding) {
+  constexpr int points = 201;
+  constexpr double amplitude = 1e-3;
+  const Eigen::EigenSolver<MatrixXd> solver(system_of(mu, z, winding), true);
+  Eigen::Index k = 0;
+  solver.eigenvalues().real().maxCoeff(&k);
+  // x + i y of the real part x and the imaginary part y of c. The vector is that of lambda, with y = -i x, or that
+  // of its conjugate, with y = i x: then x + i y is zero, and the conjugate vector is the one.
+  const int waves = waves_of(mu);
+  const VectorXd re = solver.eigenvectors().col(k).real(), im = solver.eigenvectors().col(k).imag();
+  const auto x = [&](const VectorXd& v) { return v.head(waves); };
+  const auto y = [&](const VectorXd& v) { return v.segment(waves, waves); };
+  VectorXd real = x(re) - y(im), imaginary = x(im) + y(re);
+  const VectorXd real_of_other = x(re) + y(im), imaginary_of_other = y(re) - x(im);
+  if (real.squaredNorm() + imaginary.squaredNorm() <
+      real_of_other.squaredNorm() + imaginary_of_other.squaredNorm()) {
+    real = real_of_other;
+    imaginary = imaginary_of_other;
+  }
+  std::vector<Vector3> line;
+  double largest = 0;
+  for (int j = 0; j < points; ++j) {
+    const double s = static_cast<double>(j) / (points - 1), at = 2 * s - 1;
+    double value = at, before = 1;
+    Vector3 p(real(0) + real(1) * at, imaginary(0) + imaginary(1) * at, s);
+    for (int n = 2; n < waves; ++n) {
+      before = std::exchange(value, ((2 * n - 1) * at * value - (n - 1) * before) / n);
+      p += value * Vector3(real(n), imaginary(n), 0);
+    }
+    largest = std::max(largest, p.head<2>().norm());
+    line.push_back(p);
+  }
+  for (Vector3& p : line) p.head<2>() *= amplitude / largest;
+  return line;
 }
 
 }  // namespace
@@ -131,6 +172,11 @@ double SlidingRope::growth(double moment, double winding) const {
   if (moment <= static_moment()) return 0;  // the eigenvalues there are zero, and their errors are not
   const double time = length * length * std::sqrt(mass / bend);
   return std::max(0.0, fastest(moment * length / bend, slip / std::sqrt(mass * bend), winding)) / time;
+}
+
+double SlidingRope::windings(double moment, double winding) const {
+  if (moment <= static_moment()) return 0;
+  return helix_of(fastest_line(moment * length / bend, slip / std::sqrt(mass * bend), winding)).windings;
 }
 
 // The integral over the ramp by Gauss's rule in the root of the moment beyond the static one, in which the rate of
@@ -167,6 +213,10 @@ double HelixTheory::moment_to_pass(double amplitude, double winding) const {
 
 double HelixTheory::growth(double moment, double winding) const {
   return grows ? rope.growth(moment / tubes_in_unit, winding) : 0;
+}
+
+double HelixTheory::windings(double moment, double winding) const {
+  return grows ? rope.windings(moment / tubes_in_unit, winding) : 0;
 }
 
 double HelixTheory::winding_of(double turn, double moment) const {

@@ -43,6 +43,8 @@ struct SlidingRope {
   // 1/ps: the rate of the fastest growing motion under this moment on each tube (eV) and the winding f; 0: none
   // grows.
   double growth(double moment, double winding) const;
+  // Turns of the helix that this motion makes, as the observable `windings` counts them; 0: none grows.
+  double windings(double moment, double winding) const;
   // The sum of the growth over time, of a moment that rises from zero at `rate` (eV/ps; 0: at once) and is then
   // held for `hold` (ps): the logarithm of amplitude over first amplitude.
   double gain(double moment, double winding, double rate, double hold) const;
@@ -64,6 +66,8 @@ struct HelixTheory {
   double moment_to_pass(double amplitude, double winding) const;
   // 1/ps under a moment in the reading of the scene.
   double growth(double moment, double winding) const;
+  // Turns of the helix that grows under it; 0: none grows.
+  double windings(double moment, double winding) const;
   // f, of a rope that turns by `turn` (rad) from end to end.
   double winding_of(double turn, double moment) const;
 };

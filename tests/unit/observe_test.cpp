@@ -585,7 +585,10 @@ TEST(ObservedShape, WindingsOfHelicesWithFreeEnds) {
       const double phase = 2.0 * units::pi * turns * s / 199.0;
       line.emplace_back(1.2 * s, 5.0 * std::cos(phase), 5.0 * std::sin(phase));
     }
-    EXPECT_NEAR(chord_windings(line), turns, 0.15);
+    const LineHelix seen = helix_of(line);
+    EXPECT_NEAR(seen.windings, turns, 0.15);
+    EXPECT_NEAR(seen.radius, 5.0, turns < 2 ? 1.0 : 0.25);
+    EXPECT_NEAR(seen.pitch, 1.2 * 199 / turns, 0.1 * 1.2 * 199 / turns);
   }
 }
 
@@ -597,7 +600,10 @@ TEST(ObservedShape, StraightEndsAreNoPartOfTheHelix) {
     const double r = 5.0 * std::sin(units::pi * u);
     line.emplace_back(r * std::cos(phase), r * std::sin(phase), 1.2 * s);
   }
-  EXPECT_NEAR(chord_windings(line), 2.0, 0.2);
+  const LineHelix seen = helix_of(line);
+  EXPECT_NEAR(seen.windings, 2.0, 0.2);
+  EXPECT_NEAR(seen.radius, 5.0 / std::sqrt(2.0), 0.1);
+  EXPECT_NEAR(seen.pitch, 60.0, 6.0);
 }
 
 TEST(ObservedShape, PlaneBowHasAmplitudeAndNoWindings) {
@@ -609,12 +615,14 @@ TEST(ObservedShape, PlaneBowHasAmplitudeAndNoWindings) {
     const RopeObservation seen = observe_rope(rope, shells_where(7, 1));
     EXPECT_NEAR(seen.amplitude, 4.0, 0.01);
     EXPECT_NEAR(seen.windings, 0.0, 1e-9);
+    EXPECT_TRUE(std::isnan(seen.pitch)) << "a bow makes no turn";
   }
 }
 
 TEST(ObservedShape, AmplitudeBelowOneSpacingHasNoWindings) {
   const Rope low = bent_rope(hexagonal(1), helix(119, 151.0, 0.95 * spacing, 2.0), 0.0);
   EXPECT_EQ(observe_rope(low, shells_where(7, 1)).windings, 0.0);
+  EXPECT_TRUE(std::isnan(observe_rope(low, shells_where(7, 1)).pitch));
   const Rope high = bent_rope(hexagonal(1), helix(119, 151.0, 1.05 * spacing, 2.0), 0.0);
   EXPECT_NEAR(observe_rope(high, shells_where(7, 1)).windings, 2.0, 0.2);
 }

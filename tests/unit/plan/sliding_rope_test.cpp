@@ -8,6 +8,8 @@
 #include <cmath>
 #include <complex>
 
+#include "observe/centre_line.hpp"
+#include "plan/forecast.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -24,6 +26,7 @@ TEST(SlidingRope, FreeRodGrowsFromTheMomentOfTheClampedOne) {
   const double critical = 8.986818916;  // 2 x with tan x = x
   EXPECT_NEAR(rod().static_moment(), critical, 1e-8);
   EXPECT_EQ(rod().growth(0.9999 * critical, 1), 0);
+  EXPECT_EQ(rod().windings(0.9999 * critical, 1), 0);
   const double little = rod().growth(1.0001 * critical, 1), more = rod().growth(1.0004 * critical, 1);
   EXPECT_GT(little, 0);
   EXPECT_NEAR(more / little, 2, 0.01) << "the square of an undamped rate is straight there";
@@ -58,7 +61,10 @@ TEST(SlidingRope, RatesWithoutSlipAreThoseOfTheClampedRodsEquation) {
 }
 
 // A rod of points, stepped in time by the midpoint rule, from a plane wave.
-double growth_by_steps(double mu, double slip, double winding, double time) {
+struct Grown {
+  double rate = 0, windings = 0;
+};
+Grown grown_by_steps(double mu, double slip, double winding, double time) {
   constexpr int n = 96;
   const double h = 1.0 / n, dt = time / 3000;
   const auto full = [](int rows) { return MatrixXcd::Zero(rows, n + 1); };
@@ -89,7 +95,10 @@ double growth_by_steps(double mu, double slip, double winding, double time) {
     u += dt * middle;
     v = 2 * middle - v;
   }
-  return std::log((bend * u).norm() / before) / (1000 * dt);
+  std::vector<Vector3> line;
+  const double largest = u.cwiseAbs().maxCoeff();
+  for (int j = 0; j <= n; ++j) line.emplace_back(1e-3 * u(j).real() / largest, 1e-3 * u(j).imag() / largest, j * h);
+  return {std::log((bend * u).norm() / before) / (1000 * dt), helix_of(line).windings};
 }
 
 TEST(SlidingRope, RatesWithSlipAreThoseOfAnotherSolution) {
@@ -97,7 +106,9 @@ TEST(SlidingRope, RatesWithSlipAreThoseOfAnotherSolution) {
        {std::tuple(11.4, 0.42, 0.95), std::tuple(11.4, 0.42, 0.6), std::tuple(18.0, 0.5, 0.9)}) {
     const double rate = rod(slip).growth(mu, winding);
     EXPECT_LT(rate, 0.8 * rod().growth(mu, winding)) << "slip does brake it";
-    EXPECT_NEAR(growth_by_steps(mu, slip, winding, 24 / rate), rate, 0.01 * rate) << mu << " " << winding;
+    const Grown seen = grown_by_steps(mu, slip, winding, 24 / rate);
+    EXPECT_NEAR(seen.rate, rate, 0.01 * rate) << mu << " " << winding;
+    EXPECT_NEAR(seen.windings, rod(slip).windings(mu, winding), 0.05) << mu << " " << winding;
   }
 }
 
@@ -147,6 +158,20 @@ TEST(HelixTheory, IsThatOfTheScene) {
   EXPECT_EQ(held->moment_to_pass(1, 1), 0);
   EXPECT_FALSE(theory_of(scene_with("application = \"tangential\"\n")));
   EXPECT_FALSE(theory_of(scene_with("", "[damping]\npfc_local = 0.1\n"))->grows);
+}
+
+TEST(HelixTheory, IsToldBeforeARun) {
+  const auto words_of = [](Scene scene) { return helix_ahead(scene, prepare(scene)); };
+  Scene above = scene_with("");  // 40 nN nm, of 39.6
+  const auto words = words_of(above);
+  ASSERT_TRUE(words);
+  EXPECT_NE(words->find("from 39.6 nN nm on each tube on. Under 40 nN nm"), std::string::npos) << *words;
+  EXPECT_NE(words_of(scene_with("lateral = \"held\"\n"))->find("from 27.7 nN nm on each tube on."),
+            std::string::npos);
+  EXPECT_FALSE(
+      words_of(scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 19\n"
+                             "length_nm = 81.36\n[twist]\nmoment_nN_nm = 39\nrate_nN_nm_per_ps = 2\n",
+                             "rope.toml")));
 }
 
 }  // namespace
