@@ -68,7 +68,7 @@ int observe_command(const ObserveArguments& a) {
   const auto reader = open_frames(dir.frames());
   const std::vector<Observable> chosen = observables_of_frames();
   const Console console(chosen);
-  const StoredBreaks breaks(dir.events(), prepared.topology);
+  const StoredEvents breaks(dir.events(), prepared.topology);
   if (a.tubes) {
     const std::optional<StoredFrame> last = last_frame(dir.frames(), prepared.topology);
     if (!last)

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "report/svg.hpp"
 
@@ -117,6 +118,20 @@ class DepthBuffer {
     return cells > 1;
   }
 
+  // Whether no other tube is before the line between the axes of two tubes, at some place of it.
+  bool shows_line(const Segment& s) const {
+    constexpr int samples = 8;
+    for (int k = 0; k <= samples; ++k) {
+      const double at = static_cast<double>(k) / samples;
+      const int c = static_cast<int>((s.a.x + at * (s.b.x - s.a.x) - x0_) / cell_),
+                r = static_cast<int>((s.a.y + at * (s.b.y - s.a.y) - y0_) / cell_);
+      if (c < 0 || c >= columns_ || r < 0 || r >= rows_) continue;
+      const double own = s.a.depth + at * (s.b.depth - s.a.depth) + 1.1 * radius_;  // nearer than both of its tubes
+      if (depth_[static_cast<std::size_t>(r) * columns_ + c] < own) return true;
+    }
+    return false;
+  }
+
  private:
   // Enters the surface of the segment, a round cylinder, into every cell that it covers.
   template <class F>
@@ -142,12 +157,13 @@ class DepthBuffer {
   std::vector<float> depth_;
 };
 
-void mark_visible(std::vector<SeenTube>& tubes, double radius) {
+DepthBuffer mark_visible(std::vector<SeenTube>& tubes, double radius) {
   DepthBuffer buffer(tubes, radius);
   for (const SeenTube& tube : tubes)
     for (const Segment& s : tube) buffer.add(s);
   for (SeenTube& tube : tubes)
     for (Segment& s : tube) s.visible = buffer.shows(s);
+  return buffer;
 }
 
 // --- Pieces -----------------------------------------------------------------------------------------------
@@ -211,8 +227,9 @@ struct Painter {
   double top;        // nm: upper edge
   double tolerance;  // hundredths of a nanometre
 
+  int layer_of(double depth) const { return static_cast<int>(std::floor(depth / (layer_thickness * radius))); }
   Key key(const Segment& s) const {
-    const int layer = static_cast<int>(std::floor(0.5 * (s.a.depth + s.b.depth) / (layer_thickness * radius)));
+    const int layer = layer_of(0.5 * (s.a.depth + s.b.depth));
     const double at = camera.moment_eV > 0 ? s.moment / camera.moment_eV : 0;
     return {layer, std::min(moment_colours - 1, static_cast<int>(std::min(at, 1.0) * moment_colours))};
   }
@@ -253,6 +270,24 @@ struct Painter {
     }
   }
 };
+
+// Links that can be seen, by layer: from wall to wall and a little beyond. A link to an image of its tube in a
+// slice, one period away, and one along the line of sight are left out.
+std::map<int, std::string> link_paths(const RopeView& view, const Painter& painter, const DepthBuffer& buffer) {
+  constexpr double inside = 0.2;  // of the way from axis to axis, at either end, that is not drawn
+  const double r = painter.radius, longest = 4 * r + 1;
+  std::map<int, std::string> paths;
+  for (const auto& [a, b] : view.links) {
+    if (!a.allFinite() || !b.allFinite() || (b - a).norm() > longest) continue;
+    const Segment s{see(painter.camera, a + inside * (b - a)), see(painter.camera, b - inside * (b - a)), 0, 0,
+                    true};
+    if (std::hypot(s.b.x - s.a.x, s.b.y - s.a.y) < 0.4 * r || !buffer.shows_line(s)) continue;
+    const Spot from = painter.spot(s.a.x, s.a.y), to = painter.spot(s.b.x, s.b.y);
+    std::string& d = paths[painter.layer_of(std::max(s.a.depth, s.b.depth))];
+    fmt::format_to(std::back_inserter(d), "M{} {}l{} {}", from.x, from.y, to.x - from.x, to.y - from.y);
+  }
+  return paths;
+}
 
 Extent vertical_extent(const RopeView& view, const RopeCamera& camera, double radius) {
   Extent y;
@@ -305,8 +340,16 @@ std::string paint_layer(const Paths& paths, int layer, const std::string& id, do
                             width(0.65), coloured ? 0.22 : 0.15 + 0.25 * depth);
 }
 
-std::string paint(const Paths& paths, const std::string& name, double radius, bool coloured) {
+std::string paint_link(const std::string& path, double radius) {
+  return fmt::format("<path d=\"{}\" stroke=\"#e0281e\" stroke-width=\"{}\" stroke-linecap=\"round\"/>\n", path,
+                     std::lround(0.5 * radius * per_nm));
+}
+
+// Links come after the layer of the nearer one of their tubes.
+std::string paint(const Paths& paths, const std::map<int, std::string>& links, const std::string& name,
+                  double radius, bool coloured) {
   if (paths.empty()) return "";
+  auto link = links.begin();
   const int first = paths.begin()->first.layer, last = paths.rbegin()->first.layer;
   std::string definitions = "<defs>", layers;
   for (auto p = paths.begin(); p != paths.end(); p = paths.upper_bound({p->first.layer, moment_colours})) {
@@ -315,7 +358,9 @@ std::string paint(const Paths& paths, const std::string& name, double radius, bo
     const double depth = last > first ? static_cast<double>(layer - first) / (last - first) : 1;
     definitions += define_layer(paths, layer, id);
     layers += paint_layer(paths, layer, id, radius, coloured, depth);
+    for (; link != links.end() && link->first <= layer; ++link) layers += paint_link(link->second, radius);
   }
+  for (; link != links.end(); ++link) layers += paint_link(link->second, radius);
   return definitions + "</defs>\n" + layers;
 }
 
@@ -329,6 +374,7 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
                       const std::string& name, std::size_t max_bytes) {
   std::string text;
   std::vector<SeenTube> tubes;
+  std::optional<DepthBuffer> buffer;
   std::size_t stride = 0;
   const bool coloured = camera.moment_eV > 0 && has_moments(view);
   RopeCamera used = camera;
@@ -338,13 +384,13 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
     if (detail.stride != stride) {
       stride = detail.stride;
       tubes = seen_tubes(view, camera, stride);
-      mark_visible(tubes, radius);
+      buffer = mark_visible(tubes, radius);
     }
     if (coloured) set_moments(tubes, view, detail.stride * detail.block);
     const Painter painter{used, radius, top, 3.0 + static_cast<double>(stride)};
     Paths paths;
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
-    text = paint(paths, name, radius, coloured);
+    text = paint(paths, link_paths(view, painter, *buffer), name, radius, coloured);
     if (text.size() < max_bytes - 1000) break;
   }
   return text;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,6 +83,7 @@ struct RopeView {
   double beta_deg = 0;
   std::vector<std::vector<Vector3>> tubes;                  // nm
   std::vector<std::vector<double>> bending_moment_eV = {};  // per element; none: shaded by depth alone
+  std::vector<std::array<Vector3, 2>> links = {};           // nm, on the axes of the two tubes; drawn in red
 };
 
 // Direction and scale of a view. Several views with one camera are comparable.

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "io/csv_reader.hpp"
 
@@ -31,28 +33,52 @@ std::string events_csv(const Topology& topology, const std::vector<TermEvent>& e
   return text;
 }
 
-StoredBreaks::StoredBreaks(const std::string& path, const Topology& topology) : topology_(topology) {
+StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : topology_(topology) {
   if (!std::filesystem::exists(path)) return;
   CsvReader csv(path);
   const std::vector<OutputColumn> columns = event_columns();
   if (!csv.next() || csv.line_text() != column_names(columns))
     csv.fail("", "has another header", "bring the file back as `ropewalk run` wrote it");
+  // The number of an element that the cells from `cell` on name.
+  const auto element_at = [&](std::size_t cell, const char* tube_name, const char* element_name, int behind) {
+    const double tube = csv.finite_number(cell, tube_name), element = csv.finite_number(cell + 1, element_name);
+    if (!(tube >= 0 && tube < topology.tubes()) || tube != std::floor(tube))
+      csv.fail(tube_name, "is no tube of the scene", "bring the line back");
+    const int t = static_cast<int>(tube);
+    if (!(element >= 0 && element + behind < topology.length_of(t)) || element != std::floor(element))
+      csv.fail(element_name, behind > 0 ? "has no bond behind it" : "is no element of its tube",
+               "bring the line back");
+    return topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element);
+  };
   while (csv.next()) {
     if (csv.cells().size() != columns.size())
       csv.fail("", "has too few or too many columns", "bring the line back");
-    if (csv.cells()[1] != "tube broke") continue;
-    const double time = csv.finite_number(0, "time_ps"), tube = csv.finite_number(2, "tube"),
-                 element = csv.finite_number(3, "element");
-    if (!(tube >= 0 && tube < topology.tubes()) || tube != std::floor(tube))
-      csv.fail("tube", "is no tube of the scene", "bring the line back");
-    const int t = static_cast<int>(tube);
-    if (!(element >= 0 && element + 1 < topology.length_of(t)) || element != std::floor(element))
-      csv.fail("element", "has no bond behind it", "bring the line back");
-    breaks_.push_back({time, topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element)});
+    const std::string what(csv.cells()[1]);
+    const double time = csv.finite_number(0, "time_ps");
+    if (what == "tube broke") {
+      breaks_.push_back({time, element_at(2, "tube", "element", 1)});
+    } else if (what == "link formed" || what == "link broke") {
+      const int a = element_at(2, "tube", "element", 0), b = element_at(4, "to_tube", "to_element", 0);
+      if (what == "link formed") {
+        links_.push_back({a, b, time, std::numeric_limits<double>::infinity()});
+        continue;
+      }
+      const auto held = std::find_if(links_.begin(), links_.end(), [&](const Link& l) {
+        return l.a == a && l.b == b && l.formed <= time && std::isinf(l.broke);
+      });
+      if (held != links_.end()) held->broke = time;
+    }
   }
 }
 
-Topology StoredBreaks::tubes_at(double time) const {
+std::vector<std::pair<int, int>> StoredEvents::links_at(double time) const {
+  std::vector<std::pair<int, int>> held;
+  for (const Link& l : links_)
+    if (l.formed <= time && time < l.broke) held.emplace_back(l.a, l.b);
+  return held;
+}
+
+Topology StoredEvents::tubes_at(double time) const {
   std::vector<char> broken(static_cast<std::size_t>(topology_.elements()), 0);
   bool some = false;
   for (const Break& b : breaks_)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/outputs.hpp"
@@ -12,14 +13,22 @@ namespace ropewalk {
 std::vector<OutputColumn> event_columns();
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events);
 
-// The breaks of tubes that the file of a run tells of; none where there is no file. Throws InputError where it
+// What the file of a run tells of its links and tubes; nothing where there is no file. Throws InputError where it
 // tells of elements that the scene does not have.
-class StoredBreaks {
+class StoredEvents {
  public:
-  StoredBreaks(const std::string& path, const Topology& topology);
-  bool any() const { return !breaks_.empty(); }
+  struct Link {
+    int a = 0, b = 0;              // elements
+    double formed = 0, broke = 0;  // ps; broke: infinity, it holds at the end
+  };
+  StoredEvents(const std::string& path, const Topology& topology);
+  bool any_breaks() const { return !breaks_.empty(); }
   // The tubes at this time (ps), cut where they have broken.
   Topology tubes_at(double time) const;
+  // All that ever held.
+  const std::vector<Link>& links() const { return links_; }
+  // The elements that links join at this time (ps). A file whose lines were taken away may lack some.
+  std::vector<std::pair<int, int>> links_at(double time) const;
 
  private:
   struct Break {
@@ -28,6 +37,7 @@ class StoredBreaks {
   };
   Topology topology_;
   std::vector<Break> breaks_;
+  std::vector<Link> links_;
 };
 
 }  // namespace ropewalk

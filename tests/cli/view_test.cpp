@@ -121,6 +121,37 @@ TEST_F(View, ThePageShowsTheNumbersOfTheLog) {
   }
 }
 
+// Links that hold are counted, frame by frame.
+TEST_F(View, LinksAreThereAsLongAsTheyHold) {
+  NEEDS_CHROMIUM;
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 20\n"
+       "[[links]]\nper_nm = 0.3\nstiffness_nN_per_nm = 40\nbreaks_at_nN = 1\n"
+       "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\ntubes = [0]\nz = { displacement_nm = [[0, 0], [20, "
+       "2]] }\n"
+       "[run]\nduration_ps = 20\nlog_every_ps = 5\nframes_every_ps = 5\n");
+  const Outcome o = run("run s.toml --out d --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::string events = slurp(dir / "d/events.csv");
+  const auto count = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = events.find(what); at != std::string::npos; at = events.find(what, at + 1)) ++n;
+    return n;
+  };
+  const std::size_t formed = count(",link formed,"), broken = count(",link broke,");
+  ASSERT_GT(broken, 0u);
+  ASSERT_GT(formed, broken);
+  ASSERT_EQ(run("view d").code, 0);
+  const auto links_at = [&](const std::string& hash) {
+    const Browsed page = looked([&] { return browse("d/view.html", hash); }, is_settled);
+    EXPECT_EQ(page.console(), "");
+    return page.text("id=\"links\"");
+  };
+  EXPECT_EQ(links_at("#frame=1"), fmt::format("links (red): {}", formed));
+  EXPECT_EQ(links_at(""), fmt::format("links (red): {}", formed - broken)) << "the last frame";
+  EXPECT_NE(slurp(dir / "d/report.html").find("Red: links"), std::string::npos);
+}
+
 TEST_F(View, ADamagedPageSaysSo) {
   NEEDS_CHROMIUM;
   run_rope();

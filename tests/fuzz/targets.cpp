@@ -234,7 +234,11 @@ void limits(const std::string& bytes) {
 
 void events(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { StoredBreaks(file.path(), small_simulation().topology()).tubes_at(1); });
+  taken_or_refused([&] {
+    const StoredEvents events(file.path(), small_simulation().topology());
+    events.tubes_at(1);
+    events.links_at(1);
+  });
 }
 
 void log(const std::string& bytes) {

@@ -1,7 +1,7 @@
 // The page: legend, time, what is pointed at, pictures, and what buttons and keys do.
 import {$, check, elementBegin, elements, facts, fieldValue, frames, jointBegin, numberText, tickText, tubes, unpack, withUnit}
   from './frames.js';
-import {canvas, closeScene, cut, diverging, jointAt, makeScene, mapped, placeFrame, renderer, right, sequential, shown,
+import {canvas, closeScene, cut, diverging, jointAt, linksShown, makeScene, mapped, placeFrame, renderer, right, sequential, shown,
   sources, towards, up, updateScene} from './scene.js';
 import {animation, camera, controls, fitAgain, lookFrom, makeCamera, render, request, shift, sides, still, turn, zoom}
   from './camera.js';
@@ -19,6 +19,7 @@ function showFrame(f) {
 
 function refresh() {
   updateScene();
+  $('links').textContent = facts.links.length > 0 ? `links (red): ${linksShown}` : '';
   showNumbers();
   request();
 }

@@ -181,6 +181,17 @@ function discGeometry() {
   return g;
 }
 
+// Links: rods between the axes of the tubes that they join, of which the part between the walls can be seen.
+let rods;
+
+function makeLinks() {
+  if (facts.links.length === 0) return;
+  rods = new THREE.InstancedMesh(new THREE.CylinderGeometry(1, 1, 1, 8), new THREE.MeshBasicMaterial({color: 0xe0281e}),
+    facts.links.length);
+  rods.frustumCulled = false;
+  scene.add(rods);
+}
+
 export function makeScene() {
   const context = canvas.getContext('webgl2', {antialias: false, alpha: false, powerPreference: 'high-performance'});
   if (!context) throw new Error('this browser offers no WebGL 2; `ropewalk picture` makes pictures without it');
@@ -204,6 +215,7 @@ export function makeScene() {
     {vertexShader: discVertexShader, fragmentShader: discFragmentShader, uniforms, side: THREE.DoubleSide}));
   discs.frustumCulled = false;
   scene.add(discs);
+  makeLinks();
 }
 
 // --- A frame ------------------------------------------------------------------------------------------------
@@ -304,6 +316,31 @@ function placeDiscs() {
   discs.geometry.setDrawRange(0, 3 * discCorners * discCount);
 }
 
+export let linksShown = 0;
+
+// A rod of no thickness: the link does not hold now, is cut away, or joins the image of a tube one period away.
+function placeLinks() {
+  if (!rods) return;
+  const time = facts.time_ps[shown.frame], radius = Math.max(...facts.tube_radius), along = new THREE.Vector3(0, 1, 0);
+  const turn = new THREE.Quaternion(), size = new THREE.Vector3(), place = new THREE.Matrix4();
+  const middleOf = (joint, into) => jointAt(joint, into).add(jointAt(joint + 1, u)).multiplyScalar(0.5);
+  linksShown = 0;
+  facts.links.forEach(([a, b, formed, broke], k) => {
+    middleOf(a, p);
+    middleOf(b, q);
+    n.subVectors(q, p);
+    const length = n.length();
+    p.lerp(q, 0.5);
+    const holds = formed <= time && (broke === null || time < broke);
+    const there = holds && length < 4 * radius + 1 && !(cut.normal && cut.sign * p.dot(cut.normal) > cut.offset);
+    linksShown += there;
+    turn.setFromUnitVectors(along, n.divideScalar(length || 1));
+    size.set(0.3 * radius, length, 0.3 * radius).multiplyScalar(there ? 1 : 0);
+    rods.setMatrixAt(k, place.compose(p, turn, size));
+  });
+  rods.instanceMatrix.needsUpdate = true;
+}
+
 function placeCut() {
   for (const mesh of meshes) mesh.material = cut.normal ? mesh.userData.cutOpen : mesh.userData.whole;
   if (!cut.normal) return;
@@ -330,6 +367,7 @@ export function updateScene() {
   placeCut();
   paintElements();
   placeDiscs();
+  placeLinks();
 }
 
 // Nothing is drawn any more.

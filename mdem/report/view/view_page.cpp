@@ -176,6 +176,8 @@ ViewPage page_with(const ViewInput& in, int levels) {
   }
   for (const ViewTubeNumber& n : in.tube_numbers)
     numbers.push_back({{"name", n.name}, {"meaning", n.meaning}, {"values", n.values}});
+  Json links = Json::array();  // infinity is null in JSON
+  for (const ViewLink& l : in.links) links.push_back({l.a, l.b, l.formed, l.broke});
   for (int k = 0; k <= 8; ++k) colours.push_back(viridis(k / 8.0));
   const Json facts = {{"name", in.name},
                       {"time_ps", in.time_ps},
@@ -186,6 +188,7 @@ ViewPage page_with(const ViewInput& in, int levels) {
                       {"position", position},
                       {"fields", fields},
                       {"tube_numbers", numbers},
+                      {"links", links},
                       {"right", as_json(in.camera.right)},
                       {"up", as_json(in.camera.up)},
                       {"towards", as_json(in.camera.towards)},

@@ -24,6 +24,12 @@ struct ViewTubeNumber {
   std::vector<int> values;
 };
 
+// A link between two elements, as long as it holds.
+struct ViewLink {
+  int a = 0, b = 0;              // joints where the elements begin
+  double formed = 0, broke = 0;  // ps; broke: infinity, it holds at the end
+};
+
 struct ViewInput {
   std::string name;
   std::vector<int> tube_begin;      // as of a Topology
@@ -34,6 +40,7 @@ struct ViewInput {
   std::vector<std::vector<Vector3>> joints;
   std::vector<ViewField> fields;
   std::vector<ViewTubeNumber> tube_numbers;
+  std::vector<ViewLink> links;
   RopeCamera camera;              // the side from which the page looks first
   std::size_t stored_frames = 0;  // frames of the run, of which some were chosen
 };

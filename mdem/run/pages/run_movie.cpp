@@ -62,8 +62,9 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
   const Prepared prepared = prepare(scene);
   const std::size_t stored = frame_times(dir, prepared.topology).size();
   std::vector<RopeView> views;
+  const StoredEvents events(dir.events(), prepared.topology);
   for (const StoredFrame& f : frames_of(dir, prepared.topology, evenly(stored, static_cast<std::size_t>(a.frames))))
-    views.push_back(view_of(prepared.topology, f, std::numeric_limits<double>::quiet_NaN()));
+    views.push_back(view_of(events, f, std::numeric_limits<double>::quiet_NaN()));
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
   // Beside the movie, which is renamed out of it.

@@ -16,10 +16,11 @@ std::string run_plate(const RunDirectory& dir, const PlateOptions& o) {
   in.curves = o.curves;
   in.x = o.x;
   in.width = o.width;
+  const StoredEvents events(dir.events(), prepared.topology);
   for (const StoredFrame& frame : frames_at(dir, prepared.topology, o.at, o.usual)) {
-    const RopeObservation seen = observe(observer, scene, prepared.topology, frame.state);
+    const RopeObservation seen = observe(observer, scene, events.tubes_at(frame.state.time), frame.state);
     const double beta = seen.beta / units::degree;
-    in.views.push_back(view_of(prepared.topology, frame, beta));
+    in.views.push_back(view_of(events, frame, beta));
     if (o.sections && !seen.middle.points.empty())
       in.sections.push_back({frame.state.time, beta, seen.middle, seen.radius_profile});
   }

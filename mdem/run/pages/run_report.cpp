@@ -149,13 +149,13 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.rope = is_rope(p, observer);
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
-  const StoredBreaks breaks(dir.events(), p.topology);
+  const StoredEvents events(dir.events(), p.topology);
   for (const StoredFrame& frame : read_frames(dir, p.topology)) {
-    const Topology now = breaks.tubes_at(frame.state.time);
+    const Topology now = events.tubes_at(frame.state.time);
     const RopeObservation o = observe(observer, scene, now, frame.state);
     const double beta = o.beta / units::degree;
     in.sections.push_back({frame.state.time, beta, o.middle, o.radius_profile});
-    in.views.push_back(view_of(p.topology, frame, beta));
+    in.views.push_back(view_of(events, frame, beta));
     if (in.rope) in.loading.push_back(loading_of(p.topology, now, frame.state, observer.loading));
   }
   in.in_space = has_view(dir);
@@ -171,7 +171,8 @@ bool is_rope(const Prepared& p, const Observer& observer) {
   return p.topology.tubes() > 1 && !observer.loading.radius.empty() && are_parallel(p.state);
 }
 
-RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg) {
+RopeView view_of(const StoredEvents& events, const StoredFrame& frame, double beta_deg) {
+  const Topology topology = events.tubes_at(frame.state.time);
   RopeView view;
   view.time_ps = frame.state.time;
   view.beta_deg = beta_deg;
@@ -183,6 +184,9 @@ RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta
     view.tubes.push_back(std::move(line));
     if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
   }
+  for (const auto& [a, b] : events.links_at(frame.state.time))
+    view.links.push_back(
+        {frame.state.position[static_cast<std::size_t>(a)], frame.state.position[static_cast<std::size_t>(b)]});
   return view;
 }
 
@@ -190,7 +194,7 @@ std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, c
   const std::optional<StoredFrame> frame = last_frame(dir.frames(), prepared.topology);
   if (!frame) return {};
   const double beta = observe(make_observer(scene, prepared), scene, prepared.topology, frame->state).beta;
-  return view_of(prepared.topology, *frame, beta / units::degree);
+  return view_of(StoredEvents(dir.events(), prepared.topology), *frame, beta / units::degree);
 }
 
 std::string report_of(const RunDirectory& dir, const Scene& scene, const Prepared& prepared) {

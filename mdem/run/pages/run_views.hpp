@@ -6,11 +6,13 @@
 
 #include "io/frames/frames.hpp"
 #include "report/svg.hpp"
+#include "run/events_file.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk {
 
-RopeView view_of(const Topology& topology, const StoredFrame& frame, double beta_deg);
+// Tubes that have broken are cut; with the links that hold at the time of the frame.
+RopeView view_of(const StoredEvents& events, const StoredFrame& frame, double beta_deg);
 // The view of the last frame; none where there is no frame.
 std::optional<RopeView> last_view(const RunDirectory& dir, const Scene& scene, const Prepared& prepared);
 

@@ -131,8 +131,10 @@ ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared
       in.tube_numbers.push_back({"Shell", "ring of the rope, 0: the innermost tube", shells});
   if (scene.sets.size() > 1)
     in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", p.topology.tube_type});
-  const std::vector<RopeView> ends = {view_of(p.topology, frames.front(), none),
-                                      view_of(p.topology, frames.back(), none)};
+  const StoredEvents events(dir.events(), p.topology);
+  for (const StoredEvents::Link& l : events.links())
+    in.links.push_back({l.a + p.topology.tube_of(l.a), l.b + p.topology.tube_of(l.b), l.formed, l.broke});
+  const std::vector<RopeView> ends = {view_of(events, frames.front(), none), view_of(events, frames.back(), none)};
   const double radius = p.topology.largest_radius();
   const bool film = p.topology.tubes() > 1 && !is_rope(p, observer);  // lies flat
   in.camera = film ? rope_camera(ends, radius, Vector3::UnitZ(), 1000, 1000) : rope_camera(ends, radius);

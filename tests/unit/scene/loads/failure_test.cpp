@@ -180,26 +180,26 @@ TEST(Failure, LimitsAreThoseOfTheTubesOfTheScene) {
 }
 
 // What a stored frame and events.csv tell is what the run knew.
-TEST(Failure, StoredBreaksCutTheTubesAgain) {
+TEST(Failure, StoredEventsCutTheTubesAgain) {
   Scene scene = rope();
   const Prepared p = prepare(scene);
   Simulation s = start(scene, p);
   while (s.state().time < 60 && broken(s) < 4) s.step();
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "failure-events.csv";
   std::ofstream(file) << events_csv(p.topology, s.term_events());
-  const StoredBreaks breaks(file.string(), p.topology);
-  EXPECT_TRUE(breaks.any());
+  const StoredEvents breaks(file.string(), p.topology);
+  EXPECT_TRUE(breaks.any_breaks());
   const Topology now = breaks.tubes_at(s.state().time), true_now = s.tubes_now();
   EXPECT_EQ(now.tube_begin, true_now.tube_begin);
   EXPECT_EQ(now.strand_begin, true_now.strand_begin);
   const double second = s.term_events()[1].time;
   EXPECT_EQ(breaks.tubes_at(second - 1e-3).tubes(), 8) << "after the first break";
   EXPECT_EQ(breaks.tubes_at(0).tubes(), 7);
-  EXPECT_FALSE(StoredBreaks(file.string() + "-none", p.topology).any());
+  EXPECT_FALSE(StoredEvents(file.string() + "-none", p.topology).any_breaks());
   for (const char* line : {"1,tube broke,7,0,7,1,0,0,0\n", "1,tube broke,0,79,0,80,0,0,0\n", "1,tube broke,0\n",
                            "x,tube broke,0,0,0,1,0,0,0\n"}) {
     std::ofstream(file) << events_csv(p.topology, {}) << line;
-    EXPECT_THROW(StoredBreaks(file.string(), p.topology), InputError) << line;
+    EXPECT_THROW(StoredEvents(file.string(), p.topology), InputError) << line;
   }
   std::filesystem::remove(file);
 }

@@ -6,6 +6,8 @@
 #include <omp.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <set>
 
@@ -129,6 +131,19 @@ TEST(Links, BreakAtTheirStrengthAndTheAccountStaysClosed) {
   EXPECT_GT(events.back().time, 0);
   const std::string csv = events_csv(p.topology, events);
   EXPECT_THAT(csv, HasSubstr(",link broke,"));
+  // The file tells which links hold, at any time.
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "links-events.csv";
+  std::ofstream(file) << csv;
+  const StoredEvents stored(file.string(), p.topology);
+  std::filesystem::remove(file);
+  EXPECT_EQ(static_cast<double>(stored.links_at(0).size()), first.begun);
+  EXPECT_EQ(static_cast<double>(stored.links_at(s.state().time).size()), account.begun - account.events);
+  const double middle = 0.5 * s.state().time;
+  const auto broken = std::count_if(events.begin(), events.end(), [&](const TermEvent& e) {
+    return e.what == std::string("link broke") && e.time <= middle;
+  });
+  EXPECT_EQ(static_cast<double>(stored.links_at(middle).size()), first.begun - static_cast<double>(broken));
+  EXPECT_FALSE(stored.any_breaks());
 }
 
 // A link whose walls are too near pushes, and holds.
