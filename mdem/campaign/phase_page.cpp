@@ -9,6 +9,8 @@
 #include "campaign/threshold.hpp"
 #include "io/base64.hpp"
 #include "io/csv_reader.hpp"
+#include "observe/observables.hpp"
+#include "report/log_figures.hpp"
 #include "report/page.hpp"
 #include "report/scatter.hpp"
 
@@ -78,12 +80,21 @@ std::string law_words(const Series& s) {
                                     : fmt::format("{:.2f}, of two points alone", law->exponent));
 }
 
+// In words where the last part of the key is an observable too.
+ChartAxis axis_of_key(const std::string& key) {
+  const std::string leaf = leaf_of(key);
+  const bool known = std::any_of(observables().begin(), observables().end(),
+                                 [&](const Observable& o) { return o.name == leaf; });
+  return known ? column_axis(leaf) : ChartAxis{leaf, "", false};
+}
+
 ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vector<const PhasePoint*>& points) {
   ScatterChart scatter;
   LineChart& chart = scatter.chart;
   chart.title = "Phase diagram of " + name;
   chart.x = {"length", "nm", false, true};
-  chart.y = {leaf_of(sweep.threshold->key), "", false, true};
+  chart.y = axis_of_key(sweep.threshold->key);
+  chart.y.decades = true;
   chart.height = 380;
   // The runs by the shape that they took, hollow where they did not pass.
   std::map<std::string, std::size_t> lines;
@@ -121,17 +132,17 @@ std::string off_theory(const PhasePoint& p) {
 }  // namespace
 
 std::string thresholds_csv(const Sweep& sweep, const std::vector<PhasePoint>& points) {
-  std::string text =
-      key_cells(sweep, sweep.keys()) +
-      "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,theory,static_theory,glued_theory,"
-      "winding,rate_over_theory,rates,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
+  std::string text = key_cells(sweep, sweep.keys()) +
+                     "tubes,length_nm,radius_nm,seeds,by_bisection,by_bisection_error,theory,static_theory,glued_"
+                     "theory,theory_windings,"
+                     "winding,rate_over_theory,rates,falling_seeds,unclear_seeds,outside_seeds,cut_short_runs\n";
   for (const PhasePoint& p : points)
-    text +=
-        values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
-                                cell(p.radius), p.seeds.size(), cell(p.by_bisection()), cell(p.bisection_error()),
-                                rough_cell(p.kinetic_theory()), cell(p.static_theory()), cell(p.glued_theory()),
-                                rough_cell(p.winding()), rough_cell(p.rate_over_theory()), p.rates(),
-                                p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
+    text += values(p) +
+            fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.tubes, cell(p.length),
+                        cell(p.radius), p.seeds.size(), cell(p.by_bisection()), cell(p.bisection_error()),
+                        rough_cell(p.kinetic_theory()), cell(p.static_theory()), cell(p.glued_theory()),
+                        rough_cell(p.theory_windings()), rough_cell(p.winding()), rough_cell(p.rate_over_theory()),
+                        p.rates(), p.falling_seeds(), p.unclear_seeds(), p.outside_seeds(), p.cut_short_runs());
   return text;
 }
 
@@ -167,7 +178,8 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
       "nm</th><th>length/radius</th><th>by bisection</th>";
   if (theory)
     html +=
-        "<th>theory, in this time</th><th>off it by</th><th>for ever</th><th>winding</th><th>rates of runs over "
+        "<th>theory, in this time</th><th>off it by</th><th>its turns</th><th>for "
+        "ever</th><th>winding</th><th>rates of runs over "
         "theory</th><th>glued tubes</th>";
   html += "</tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
@@ -180,8 +192,9 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
                                                        : "not run yet") +
                       (p.remarks().empty() ? "" : "; " + p.remarks())));
     if (theory)
-      html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
-                          number(p.kinetic_theory()), off_theory(p), number(p.static_theory()), number(p.winding()),
+      html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
+                          number(p.kinetic_theory()), off_theory(p), number(p.theory_windings()),
+                          number(p.static_theory()), number(p.winding()),
                           p.rates() > 0 ? fmt::format("{:.2f}, of {}", p.rate_over_theory(), p.rates()) : "–",
                           number(p.glued_theory()));
     html += "</tr>\n";
@@ -196,7 +209,8 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "the "
         "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
         "rope "
-        "that stays packed. Glued tubes would need EI + EA<rho^2>/2 in place of EI."));
+        "that stays packed. Its turns are those of the helix that grows fastest there. Glued tubes would need EI + "
+        "EA<rho^2>/2 in place of EI."));
   for (const auto& [name, some] : diagrams_of(sweep, points)) {
     const std::string svg = scatter_svg(diagram(sweep, name, some));
     if (svg.empty()) continue;

@@ -30,11 +30,6 @@ bool lock(int file, bool wait) {
 
 }  // namespace
 
-std::string duration_text(double s) {
-  if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
-  return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
-}
-
 void remove_hardly_begun(const RunDirectory& dir) {
   if (!fs::exists(dir.path)) return;
   refuse_strange_files(dir);

@@ -13,8 +13,6 @@ namespace ropewalk {
 
 inline constexpr int point_busy = 75;  // exit code of a process that found its point locked by another one
 
-std::string duration_text(double seconds);  // "12 min"
-
 // Removes a run that was killed before its first checkpoint. Throws InputError where the directory holds anything
 // else: more than the first row of a log, or a file that is not of a run.
 void remove_hardly_begun(const RunDirectory& dir);

@@ -12,6 +12,7 @@
 #include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "io/clocks.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/limits_file.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "campaign/point_runs.hpp"
+#include "io/clocks.hpp"
 #include "io/plain_text.hpp"
 #include "io/stop_signals.hpp"
 #include "run/tell.hpp"
@@ -69,8 +70,8 @@ void tell_not_ended(const CampaignDirectory& dir, const std::string& point) {
 }
 
 int tell_stop() {
-  tell_as_is(fmt::format("ropewalk: stopped by signal {}; go on with the same command\n",
-                         static_cast<int>(stop_signal)));
+  tell_as_is(
+      fmt::format("ropewalk: stopped by signal {}; go on with the same command\n", static_cast<int>(stop_signal)));
   return 128 + stop_signal;
 }
 

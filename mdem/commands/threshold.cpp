@@ -10,6 +10,7 @@
 #include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "io/clocks.hpp"
 #include "io/plain_text.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"

@@ -1,7 +1,10 @@
-// Processor time of this process, and a clock that never goes back.
+// Processor time of this process, a clock that never goes back, and times in words.
 #pragma once
 
+#include <fmt/format.h>
 #include <time.h>
+
+#include <string>
 
 namespace ropewalk {
 
@@ -17,5 +20,11 @@ inline double processor_seconds() { return seconds_by(CLOCK_PROCESS_CPUTIME_ID);
 // The time of a clock that never goes back, s.
 inline double steady_seconds() { return seconds_by(CLOCK_MONOTONIC); }
 inline double seconds_since(double began) { return steady_seconds() - began; }
+
+// "12 min"
+inline std::string duration_text(double s) {
+  if (s >= 5400) return fmt::format("{:.1f} h", s / 3600);
+  return s >= 90 ? fmt::format("{:.0f} min", s / 60) : fmt::format("{:.0f} s", s);
+}
 
 }  // namespace ropewalk

@@ -81,18 +81,6 @@ double within(const Topology& topology, const std::vector<int>& end) {
   return 0.5 * (each - 1) * topology.type_of_element(end.front()).element_length;
 }
 
-// nm, from elements to their images above.
-double period_of(const Topology& topology, const State& state) {
-  double sum = 0;
-  int images = 0;
-  for (int e = 0; e < topology.elements(); ++e)
-    if (const int image = topology.image_above(e); image >= 0) {
-      sum += state.position.z[static_cast<std::size_t>(image)] - state.position.z[static_cast<std::size_t>(e)];
-      ++images;
-    }
-  return sum / images;
-}
-
 double twist_of(const Topology& topology, const State& state, int tube) {
   double sum = 0;
   int bonds = 0;
@@ -106,6 +94,17 @@ double twist_of(const Topology& topology, const State& state, int tube) {
 }
 
 }  // namespace
+
+double slice_length(const Topology& topology, const State& state) {
+  double sum = 0;
+  int images = 0;
+  for (int e = 0; e < topology.elements(); ++e)
+    if (const int image = topology.image_above(e); image >= 0) {
+      sum += state.position.z[static_cast<std::size_t>(image)] - state.position.z[static_cast<std::size_t>(e)];
+      ++images;
+    }
+  return sum / images;
+}
 
 LoadingReference loading_reference(const Topology& tubes, const State& start, const RopeShells& shells,
                                    EndElements ends, double spacing, double neighbour_radius,
@@ -248,7 +247,7 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
                       within(topology, reference.ends[upper_end]);
   out.strain = free > 0 ? (out.ends_apart - reference.ends_apart) / free : 0;
   if (topology.images > 0) {
-    out.ends_apart = period_of(topology, state);
+    out.ends_apart = slice_length(topology, state);
     out.strain = out.ends_apart / topology.period - 1;
   }
   for (int t = 0; t < topology.tubes(); ++t) {

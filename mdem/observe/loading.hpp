@@ -43,6 +43,9 @@ struct Loading {
 };
 Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
 
+// nm along z, of a slice whose images stand one period from their elements.
+double slice_length(const Topology& topology, const State& state);
+
 // The load on one tube.
 struct TubeLoading {
   double tension = 0, most_tension = 0;  // eV/nm: mean over the middle third, largest absolute value

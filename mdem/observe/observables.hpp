@@ -21,14 +21,14 @@ struct EnergyAccount {
   double time_step = 0;  // ps
   double moment = 0;     // eV, of the twist protocol
   Energies potential;
-  double kinetic = 0;       // eV
-  double work = 0;          // eV, done by the loads since the start
-  double dissipated = 0;    // eV, taken out by damping since the start
-  double heat = 0;          // eV, brought in by the thermostat since the start
-  double first_energy = 0;  // eV, total at the start
-  Energies first;           // potential at the start
+  double kinetic = 0;                        // eV
+  double work = 0;                           // eV, done by the loads since the start
+  double dissipated = 0;                     // eV, taken out by damping since the start
+  double heat = 0;                           // eV, brought in by the thermostat since the start
+  double first_energy = 0;                   // eV, total at the start
+  Energies first;                            // potential at the start
   std::map<std::string, TermReading> terms;  // of the force terms by their names
-  EndReadings ends;         // means since the row before
+  EndReadings ends;                          // means since the row before
 };
 
 // Of what was dissipated (eV), the part that numerical damping has taken: all but what force terms have lost.
@@ -60,10 +60,11 @@ struct Observable {
   std::string meaning;  // one clause, without a full stop
   ObservableGroup group = ObservableGroup::shape;
   std::function<double(const Measurement&)> value;  // in `unit`
-  bool whole = false;                             // an integer
+  bool whole = false;                               // an integer
+  std::string label = {};  // of an axis or a line, without the unit: "torque, upper end"; empty: the name in words
 };
 
-// Its name in words and without the unit: "torque upper" of torque_upper_nN_nm.
+// Its label, or its name in words and without the unit: "ply angle" of ply_angle_deg.
 std::string quantity_of(const Observable& observable);
 
 // In the order of the columns.

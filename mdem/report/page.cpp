@@ -11,6 +11,7 @@ namespace ropewalk {
 namespace {
 
 constexpr std::size_t max_rows = 60;  // of a table under a chart
+constexpr int max_decimals = 9;       // of a number beside its error
 
 // Decimals of a column: five digits of the largest value, and the same decimals in all rows.
 int decimals_of(const TableColumn& column) {
@@ -32,10 +33,19 @@ std::string with_powers(std::string text) {
   return escape_markup(text);
 }
 
-std::string plain_number(double value) {
-  std::string text = fmt::format("{}", value);
-  if (!text.empty() && text[0] == '-') text.replace(0, 1, "−");
-  return std::isnan(value) ? "–" : text;
+// Decimals that show two digits of the error.
+int decimals_of_error(double error) { return std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))); }
+
+// As many digits as the error allows, and seven where there is none.
+std::string value_text(const Quantity& q) {
+  if (std::isnan(q.value)) return "–";
+  const double error = q.standard_error.value_or(0);
+  const int decimals = error > 0 && std::isfinite(error) ? decimals_of_error(error) : max_decimals + 1;
+  std::string text = decimals > max_decimals            ? fmt::format("{:.7g}", q.value)
+                     : std::fabs(q.value) < 0.5 * error ? "0"
+                                                        : fmt::format("{:.{}f}", q.value, decimals);
+  if (text[0] == '-') text.replace(0, 1, "−");
+  return text;
 }
 
 const char* page_css = R"(*{box-sizing:border-box}
@@ -82,8 +92,18 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .facts td{overflow-wrap:anywhere}
 .facts td.number{overflow-wrap:normal}
 @media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}}
-@media print{body{font-size:10.5pt}main{max-width:none;padding:0}
-h2{break-after:avoid}details{display:none}.pair{grid-template-columns:1fr 1fr}}
+@page{margin:13mm 14mm}
+@media print{body{font-size:8.6pt;line-height:1.4}main{max-width:none;padding:0}
+p,ul,.warnings,figcaption{max-width:none}.lead{font-size:1em}a{color:inherit}
+h1{font-size:1.7rem}h2{font-size:1.15rem;margin:.7em 0 .4em;padding-top:.4em;break-after:avoid}h3{margin:0 0 .2em}
+figure,.pair figure{margin-bottom:.8em}figcaption{line-height:1.3}
+.pair{grid-template-columns:1fr 1fr;gap:0 18px}.pair svg{width:auto;max-width:100%;max-height:43mm}
+.views{display:grid;grid-template-columns:repeat(3,1fr);gap:6px 14px}.views svg{width:100%;height:auto}
+.row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto}
+details{display:none}.scroll{overflow:visible}
+table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1px 8px 1px 0}tr{break-inside:avoid}
+.columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}
+.columns td:not(:first-child){overflow-wrap:normal}}
 )";
 
 }  // namespace
@@ -126,10 +146,10 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
 std::string measured_text(double value, double error) {
   if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.7g}", value);
   if (std::fabs(value) < 0.5 * error) return fmt::format("0 ± {:.2g}", error);
-  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(error))));
+  const int decimals = decimals_of_error(error);
   const std::string number = fmt::format("{:.{}f}", value, decimals);
   // Small numbers of small errors are clearer with a power of ten.
-  if (decimals > 9) return fmt::format("{:.10g} ± {:.2g}", value, error);
+  if (decimals > max_decimals) return fmt::format("{:.10g} ± {:.2g}", value, error);
   return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
@@ -158,14 +178,15 @@ std::string parameters_part(const std::string& name, const std::string& referenc
                                   escape_markup(reference)));
   if (parameters.empty()) return html + paragraph("No parameters are listed.");
   html +=
-      "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Parameter</th><th class=\"number\">Value</th>"
+      "<div class=\"scroll columns\"><table class=\"facts\"><thead><tr><th>Parameter</th><th "
+      "class=\"number\">Value</th>"
       "<th>Unit</th><th>Standard error</th><th>Between potentials</th><th>Origin</th><th>DOI</th></tr></thead>"
       "<tbody>\n";
   for (const Quantity& q : parameters)
     html += fmt::format(
         "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        escape_markup(q.key), plain_number(q.value), with_powers(q.unit),
-        q.standard_error ? plain_number(*q.standard_error) : "<span class=\"soft\">not published</span>",
+        escape_markup(q.key), value_text(q), with_powers(q.unit),
+        q.standard_error ? number_text(*q.standard_error, 2) : "<span class=\"soft\">not published</span>",
         potential_spread(q.key) > 0 ? number_text(potential_spread(q.key) * std::fabs(q.value), 2) : "",
         escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
@@ -183,7 +204,7 @@ namespace {
 std::string head(const std::string& name, const std::string& allowed, const std::string& more_css) {
   return std::string(
              "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ") +
+             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; ") +
          allowed +
          "\"/>\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
          "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>" +

@@ -47,21 +47,26 @@ std::vector<std::string> terms_in(const std::vector<LogRow>& log) {
 }
 std::string term_of(const std::string& column) { return column.substr(0, column.rfind("_eV")); }
 
-Panel other_energies(const std::vector<LogRow>& log) {
-  std::string caption =
-      "Change since the start of the van der Waals energy between the tubes, the kinetic energy and the total.";
-  if (!log.empty())
-    caption += fmt::format(" At the start: van der Waals {} eV, kinetic {} eV, total {} eV.",
-                           number_text(log.front()["vdw_eV"], 6), number_text(log.front()["kinetic_eV"], 5),
-                           number_text(total_energy(log.front()), 6));
-  Panel panel{
-      "Contact, kinetic and total energy",
-      caption,
-      {"change of energy", "eV", false},
-      {{"van der Waals", logged("vdw_eV"), 3}, {"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
-      false,
-      true};
-  for (const std::string& column : terms_in(log)) panel.traces.push_back({term_of(column), logged(column), 4});
+Panel other_energies(const ReportInput& in) {
+  const bool contacts = in.tubes > 1;
+  std::string caption = contacts ? "Change since the start of the van der Waals energy between the tubes, the "
+                                   "kinetic energy and the total."
+                                 : "Change since the start of the kinetic energy and of the total.";
+  if (!in.log.empty()) {
+    const LogRow& first = in.log.front();
+    caption += " At the start: ";
+    if (contacts) caption += fmt::format("van der Waals {} eV, ", number_text(first["vdw_eV"], 6));
+    caption += fmt::format("kinetic {} eV, total {} eV.", number_text(first["kinetic_eV"], 5),
+                           number_text(total_energy(first), 6));
+  }
+  Panel panel{contacts ? "Contact, kinetic and total energy" : "Kinetic and total energy",
+              caption,
+              {"change of energy", "eV", false},
+              {{"kinetic", logged("kinetic_eV"), 2}, {"total", total_energy, 5}},
+              false,
+              true};
+  if (contacts) panel.traces.insert(panel.traces.begin(), {"van der Waals", logged("vdw_eV"), 3});
+  for (const std::string& column : terms_in(in.log)) panel.traces.push_back({term_of(column), logged(column), 4});
   return panel;
 }
 
@@ -90,13 +95,13 @@ Panel end_twists() {
           {{"physical", logged("physical_twist_deg"), 1}, {"geometric", logged("geometric_twist_deg"), 0}}};
 }
 
-Panel amplitude() {
-  return {
-      "Deflection of the rope",
-      "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and beyond, "
-      "the rope as a whole has buckled.",
-      {"amplitude", "nm", false},
-      {{"amplitude", logged("amplitude_nm"), 0}}};
+Panel amplitude(bool rope) {
+  return {rope ? "Deflection of the rope" : "Deflection of the tube",
+          rope ? "Largest distance of the centre line from its chord. Where it grows to the radius of the rope and "
+                 "beyond, the rope as a whole has buckled."
+               : "Largest distance of the axis of the tube from its chord.",
+          {"amplitude", "nm", false},
+          {{"amplitude", logged("amplitude_nm"), 0}}};
 }
 
 Panel windings() {
@@ -224,6 +229,8 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
           "at their radius. ") +
       fmt::format("The bar is {:g} nm long.", scale_bar_length(camera));
   html += "</div>\n";
+  if (std::any_of(views.begin(), views.end(), [](const RopeView& v) { return !v.links.empty(); }))
+    caption += " Red: links, where they can be seen.";
   if (camera.moment_eV > 0) {
     html += moment_bar(camera.moment_eV);
     caption +=
@@ -315,8 +322,9 @@ std::string summary(const ReportInput& in) {
                       number_text(r["twist_eV"], 3));
   for (const std::string& column : terms_in(in.log))
     html += fmt::format(", {} <b>{} eV</b>", term_of(column), number_text(r[column], 3));
-  html += fmt::format(", the van der Waals contacts <b>{} eV</b>. The kinetic energy is {} eV, the total {} eV.",
-                      number_text(r["vdw_eV"]), number_text(r["kinetic_eV"], 3), number_text(total_energy(r)));
+  if (in.tubes > 1) html += fmt::format(", the van der Waals contacts <b>{} eV</b>", number_text(r["vdw_eV"]));
+  html += fmt::format(". The kinetic energy is {} eV, the total {} eV.", number_text(r["kinetic_eV"], 3),
+                      number_text(total_energy(r)));
   if (in.rope && any_internal(in.shells))
     html += fmt::format(
         " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
@@ -464,15 +472,20 @@ std::string carried_errors(const ReportInput& in) {
   return html + facts_part(facts);
 }
 
-// Every column of the log, also those that no chart shows.
+// The columns of the log, also those that no chart shows, but for those that are zero or nan all the time.
 std::string observables_part(const std::vector<LogRow>& log) {
   if (log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html =
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Column of log.csv</th><th>Unit</th><th "
       "class=\"number\">Start</th><th class=\"number\">End</th><th class=\"number\">Smallest</th><th "
       "class=\"number\">Largest</th><th>Meaning</th></tr></thead><tbody>\n";
+  std::string zero;
   for (const Observable& o : observables()) {
     std::vector<double> values = values_of(log, logged(o.name));
+    if (std::none_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v != 0; })) {
+      zero += (zero.empty() ? "" : ", ") + escape_markup(o.name);
+      continue;
+    }
     const double start = values.front(), end = values.back();
     values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
                  values.end());
@@ -485,7 +498,9 @@ std::string observables_part(const std::vector<LogRow>& log) {
             number(end) + number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
             "<td class=\"soft\">" + escape_markup(o.meaning) + "</td></tr>\n";
   }
-  return html + "</tbody></table></div>\n";
+  html += "</tbody></table></div>\n";
+  return zero.empty() ? html
+                      : html + "<p class=\"soft\">Zero, or without a value, in all rows: " + zero + ".</p>\n";
 }
 
 // --- The page -----------------------------------------------------------------------------------------------
@@ -499,7 +514,7 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   // In statements of their own, since figures are numbered and C++ does not fix the order of evaluation of
   // arguments.
   std::string html = loading_part(in, figures) + heading("Energies");
-  const std::string bonds = panel(bond_energies()), others = panel(other_energies(in.log));
+  const std::string bonds = panel(bond_energies()), others = panel(other_energies(in));
   html += pair_of(bonds, others);
   const bool packed = any_internal(in.shells);
   if (in.rope) {
@@ -511,13 +526,13 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
     html += pair_of(charge, beta);
     const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
     html += pair_of(twists, radius) + heading("Buckling of the rope");
-    const std::string deflection = panel(amplitude()), turns = panel(windings());
+    const std::string deflection = panel(amplitude(true)), turns = panel(windings());
     html += pair_of(deflection, turns);
   } else {
     html += heading("Shape of the tubes");
     const std::string curved = panel(curvature()), twists = panel(tube_twist());
     html += pair_of(curved, twists);
-    if (in.tubes == 1) html += panel(amplitude());
+    if (in.tubes == 1) html += panel(amplitude(false));
   }
   html += heading("Energy balance");
   const std::string work = panel(work_and_heat(in.log)), error = panel(balance(in));

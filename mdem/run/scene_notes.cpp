@@ -39,7 +39,8 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
   if (off < 0.01) return;
   warnings.push_back(fmt::format(
       "law = \"paper\" is up to {:.2g} % off for {}: tubes crossed at 90 degrees bind with {:.2f} to {:.2f} eV by "
-      "where along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} eV/nm "
+      "where along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} "
+      "eV/nm "
       "at {:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
       100 * off, set.name, w.crossed_shallowest, w.crossed_deepest, integral.cross90_energy, w.parallel, w.spacing,
       integral.pair_energy, integral.pair_spacing));
@@ -92,7 +93,8 @@ void warn_of_second_neighbours(const Scene& scene, double spacing, std::vector<s
   if (spacing > 0 && typed >= second)
     warnings.push_back(fmt::format(
         "observe.neighbour_radius_nm = {:.4g} reaches the second neighbours of the packing, at {:.4g} nm: "
-        "Q and contacts count them too, and Q of a perfect rope of 19 tubes or more is below zero. Q_delaunay needs "
+        "Q and contacts count them too, and Q of a perfect rope of 19 tubes or more is below zero. Q_delaunay "
+        "needs "
         "no radius.",
         typed, second));
 }
@@ -172,11 +174,11 @@ std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topol
   const std::string what =
       "Registry, how the lattices of two neighbouring tubes lie on one another, is left out: tubes are smooth. ";
   if (deviation < 0)
-    return {
-        what +
-        "How much it counts for these tubes stands in no number of their parameter sets; of other tubes the "
-        "binding energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of small ropes "
-        "move by some per cent at small angles."};
+    return {what +
+            "How much it counts for these tubes stands in no number of their parameter sets; of other tubes the "
+            "binding energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of "
+            "small ropes "
+            "move by some per cent at small angles."};
   std::vector<std::string> out = {
       what +
       fmt::format("Over all registries the binding energy of two real tubes has a standard deviation of {:.2g} % "
@@ -185,17 +187,25 @@ std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topol
   if (log.empty()) return out;
   const LogRow& last = log.back();
   const double bonds = last["stretch_eV"] + last["shear_eV"] + last["bend_eV"] + last["twist_eV"];
-  const double alike = deviation * std::fabs(last["vdw_eV"]), n = topology.tubes();
-  // No more circles than this touch one another in a plane.
-  const double pairs = std::max(1.0, std::floor(3 * n - std::sqrt(12 * n - 3)));
-  out.push_back(
-      fmt::format("At the end that is ± {:.3g} eV of {:.5g} eV van der Waals energy if every pair of neighbours "
-                  "lies alike, and "
-                  "± {:.3g} eV if the {:.0f} pairs of a close-packed rope of as many tubes lie at random{}.",
-                  alike, last["vdw_eV"], alike / std::sqrt(pairs), pairs,
-                  bonds > 0 ? fmt::format(": {:.2g} and {:.2g} % of what the bonds hold", 100 * alike / bonds,
-                                          100 * alike / std::sqrt(pairs) / bonds)
-                            : ""));
+  const double alike = deviation * std::fabs(last["vdw_eV"]), n = topology.strands();
+  if (alike == 0) return out;
+  const auto of_bonds = [&](double energy) { return 100 * energy / bonds; };
+  std::string words = fmt::format(
+      "At the end that is ± {:.3g} eV of {:.5g} eV van der Waals energy if every pair of neighbours lies alike",
+      alike, last["vdw_eV"]);
+  if (scene.source->is_parallel()) {
+    // No more circles than this touch one another in a plane.
+    const double pairs = std::max(1.0, std::floor(3 * n - std::sqrt(12 * n - 3))),
+                 random = alike / std::sqrt(pairs);
+    words +=
+        fmt::format(", and ± {:.3g} eV if the {:.0f} pairs of a close-packed rope of as many tubes lie at random",
+                    random, pairs);
+    if (bonds > 0)
+      words += fmt::format(": {:.2g} and {:.2g} % of what the bonds hold", of_bonds(alike), of_bonds(random));
+  } else if (bonds > 0) {
+    words += fmt::format(": {:.2g} % of what the bonds hold", of_bonds(alike));
+  }
+  out.push_back(words + ".");
   return out;
 }
 

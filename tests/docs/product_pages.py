@@ -3,9 +3,11 @@
 report of a run, whose tables are held against its log.
 
     product_pages.py REPOSITORY ROPEWALK"""
+import base64
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -64,6 +66,20 @@ def report_of_a_run(browser, program, folder):
                              f"run/report.html: {name} is {text}, and {logged} in the log")
                 compared.add(name)
     pages.expect(compared == set(columns), f"run/report.html: tables without {set(columns) - compared}")
+
+
+def demo_on_paper(browser, program, repository, folder):
+    """The report of the demo's scene, with fewer tubes, has at most six pages of paper."""
+    text = (repository / "data/scenes/rope-67nm.toml").read_text()
+    pages.expect("\ntubes = 91 " in text, "rope-67nm.toml has other tubes")
+    (folder / "demo.toml").write_text(text.replace("\ntubes = 91 ", "\ntubes = 19 "))
+    subprocess.run([program, "run", "demo.toml", "--out", "demo", "--quiet"], cwd=folder, check=True)
+    browser.size(*pages.desk)
+    browser.call("Emulation.setEmulatedMedia", media="")
+    browser.open((folder / "demo/report.html").as_uri())
+    printed = browser.call("Page.printToPDF", paperWidth=8.27, paperHeight=11.69, preferCSSPageSize=True)["data"]
+    sheets = len(re.findall(rb"/Type\s*/Page\b", base64.b64decode(printed)))
+    pages.expect(1 < sheets <= 6, f"demo/report.html takes {sheets} pages of paper")
 
 
 def chart_points(browser, repository):
@@ -178,6 +194,9 @@ def hostile_pages(browser, program, folder):
     subprocess.run([program.parent.parent / "calibrate/ropewalk-calibrate", "show", "set.toml", "--page", "set.html"], cwd=folder,
                    check=True, stdout=subprocess.DEVNULL)
     pages_of_thresholds(program, folder)
+    pages.look(browser, folder, "first/thresholds.html")
+    pictures = browser.value("document.images.length")
+    pages.expect(pictures >= 2, f"first/thresholds.html: {pictures} pictures of states")
     pages_of_validations(program, folder)
     # The page of a comparison has the names of directories, that of a parametrization those of its tubes.
     for page, shown in (("hostile/report.html", True), ("hostile/view.html", True), ("compared.html", False), ("sets.html", True),
@@ -211,6 +230,7 @@ def main():
             pages.look(browser, repository, page)
         chart_points(browser, repository)
         report_of_a_run(browser, Path(sys.argv[2]).resolve(), Path(folder).resolve())
+        demo_on_paper(browser, Path(sys.argv[2]).resolve(), repository, Path(folder).resolve())
         hostile_pages(browser, Path(sys.argv[2]).resolve(), Path(folder).resolve())
     print(f"{len(shipped) + 1} pages at three sizes")
     for error in pages.errors:

@@ -841,6 +841,28 @@ TEST(RopePicture, HidesTheTubesInside) {
   EXPECT_EQ(pieces(both), 1u);
 }
 
+TEST(RopePicture, DrawsTheLinksThatCanBeSeen) {
+  RopeView view = twisted_rope(0, 30, 0, 0, false);
+  const RopeCamera camera = rope_camera({twisted_rope(1, 30, 0, 0, false)}, 0.678);
+  auto beside = view.tubes[0], before = view.tubes[0];
+  for (Vector3& p : beside) p += 1.713 * camera.up;
+  view.tubes.push_back(beside);
+  const auto links = [&] {
+    const std::string svg = rope_picture(view, camera, 0.678, "v", false);
+    const std::size_t red = svg.find("#e0281e"), begin = svg.rfind("d=\"", red);
+    return red == std::string::npos ? 0 : std::count(svg.begin() + begin, svg.begin() + red, 'M');
+  };
+  EXPECT_EQ(links(), 0);
+  view.links = {{view.tubes[0][10], beside[10]},
+                {view.tubes[0][15], beside[16]},
+                {view.tubes[0][3], beside[28]},                                    // to an image in a slice
+                {view.tubes[0][20], view.tubes[0][20] - 1.713 * camera.towards}};  // behind its tube
+  EXPECT_EQ(links(), 2);
+  for (Vector3& p : before) p += 1.713 * camera.towards + 0.8 * camera.up;
+  view.tubes.push_back(before);
+  EXPECT_EQ(links(), 0) << "a tube in front hides them";
+}
+
 TEST(RopeCamera, LooksAtTheRopeFromTheSide) {
   const RopeCamera c = rope_camera({twisted_rope(1, 100, 0, 0, false), twisted_rope(1, 100, 0, 20, false)}, 0.678);
   EXPECT_NEAR(c.right.z(), 1, 1e-6);
@@ -923,9 +945,11 @@ void expect_sound_page(const std::string& html) {
     EXPECT_THAT(html, Not(HasSubstr(reference)));
   const std::regex href("href=\"([^#])");
   EXPECT_FALSE(std::regex_search(html, href)) << "only references into the page itself";
-  EXPECT_THAT(html,
-              HasSubstr("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-                        "'unsafe-inline'\"/>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr(
+          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+          "'unsafe-inline'\"/>"));
   EXPECT_THAT(attributes(html), Not(testing::ContainsRegex("[^a-z]nan|[^a-z]inf")));
   EXPECT_THAT(html, Not(testing::ContainsRegex("[>( ]-?nan[ <)]")));
 }
@@ -967,7 +991,14 @@ TEST(Report, ListsEveryObservable) {
   in.log[3]["radius_mid_nm"] = 7777;
   in.log[4]["radius_mid_nm"] = nan_value;
   const std::string html = report_html(in);
-  for (const Observable& o : observables()) EXPECT_THAT(html, HasSubstr("<tr><th>" + o.name + "</th>"));
+  const std::string none = "Zero, or without a value, in all rows: ";
+  const std::size_t zero = html.find(none), last = html.find(".</p>", zero);
+  ASSERT_NE(zero, std::string::npos);
+  EXPECT_EQ(html.substr(zero + none.size(), last - zero - none.size()), "overtwisted, overstretched");
+  for (const Observable& o : observables())
+    EXPECT_EQ(html.find("<tr><th>" + o.name + "</th>") == std::string::npos,
+              o.name == "overtwisted" || o.name == "overstretched")
+        << o.name;
   const std::size_t row = html.find("<th>kinked</th>"), end = html.find("</tr>", row);
   EXPECT_THAT(html.substr(row, end - row),
               HasSubstr("<td class=\"number\">2</td><td class=\"number\">2</td><td class=\"number\">2</td><td "

@@ -32,7 +32,8 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "most_curvature_per_nm,slip_nm,core_pressure_GPa,beta_deg,physical_twist_deg,geometric_twist_deg,ply_angle_"
       "deg,Q,Q_"
       "delaunay,"
-      "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,middle_amplitude_"
+      "contacts,voids,void_area_nm2,radius_mid_nm,radius_end_nm,length_nm,amplitude_nm,windings,helix_radius_nm,"
+      "pitch_nm,middle_amplitude_"
       "nm,"
       "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_"
       "tex,"
@@ -78,6 +79,8 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.length = 66.1;
   o.amplitude = 7e-7;
   o.windings = -0.0;
+  o.helix_radius = 2.5;
+  o.pitch = 0.375;
   o.middle_amplitude = 0.5;
   o.writhe = -0.75;
   o.turned_back = 0.25;
@@ -91,7 +94,8 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "2,1,66,"
       "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-7.16197243913529,-1,2,210,"
       "3,"
-      "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,0,0,0,0,0,"
+      "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,2.5,0.375,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,"
+      "0,0,0,0,0,"
       "0,0,0,0\n");
 }
 

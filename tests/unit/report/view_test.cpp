@@ -159,7 +159,7 @@ TEST(ViewPage, NamesAreTextAndNothingElseIsAskedFor) {
   const std::string page = view_page(noisy(2), 100000000).html;
   EXPECT_EQ(page.find("a </script> rope"), std::string::npos);
   EXPECT_NE(page.find("<h1>a &lt;/script&gt; rope &amp; more</h1>"), std::string::npos);
-  EXPECT_NE(page.find("default-src 'none'; style-src 'unsafe-inline'; script-src 'nonce-"),
+  EXPECT_NE(page.find("default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'nonce-"),
             std::string::npos);
   EXPECT_EQ(page.find("{{"), page.find("{{", page.find(view_js))) << "every mark of view.html is filled";
 }
