@@ -1,15 +1,21 @@
 #!/bin/sh
-# Runs everything on this page anew: remake.sh [PROGRAM], about two hours on two cores. Runs stay in runs/, and a second call
+# Runs everything on this page anew: remake.sh [PROGRAM], about four hours on two cores. Runs stay in runs/, and a second call
 # goes on where the first one stopped.
 set -eu
 cd "$(dirname "$0")"
 program=${1:-ropewalk}
-for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 video; do
+for figure in fig2 fig3 fig3-pfc fig3-calibrated fig4 rates video; do
   "$program" sweep $figure.toml --out runs/$figure
   "$program" gather runs/$figure -o $figure.csv --force \
     --columns time_ps,beta_deg,twist_eV,bend_eV,vdw_eV,dissipated_eV,Q,Q_delaunay,void_area_nm2,amplitude_nm,windings
   "$program" gather runs/$figure --series --columns time_ps,moment_nN_nm,twist_eV,Q | awk -f release.awk >$figure-release.csv
 done
+"$program" sweep helices.toml --out runs/helices
+"$program" gather runs/helices -o helices.csv --force \
+  --columns time_ps,beta_deg,twist_eV,bend_eV,amplitude_nm,windings,helix_radius_nm,pitch_nm
+"$program" threshold atoms.toml --out runs/atoms
+cp runs/atoms/thresholds.csv atoms-thresholds.csv
+cp runs/atoms/trials.csv atoms-trials.csv
 "$program" threshold fig5.toml --out runs/fig5
 cp runs/fig5/thresholds.csv fig5-thresholds.csv
 cp runs/fig5/trials.csv fig5-gentle-trials.csv

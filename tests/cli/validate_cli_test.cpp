@@ -36,7 +36,8 @@ TEST_F(Validate, ListDescribesEveryCase) {
 TEST_F(Validate, WrongInputGetsOneLine) {
   spit(dir / "file", "");
   for (const auto& [line, words] :
-       {std::pair{"validate", "subcommand"}, std::pair{"validate run no-such-case", "there is no case"},
+       {std::pair{"validate", "subcommand"},
+        std::pair{"validate run no-such-case", "there is no case"},
         std::pair{"validate run euler-bucklin", "did you mean \"euler-buckling\"?"},
         std::pair{"validate chrt", "there is no verb \"chrt\"; did you mean chart?"},
         std::pair{"validate run --tier medium", "choose quick or full"},
@@ -45,14 +46,16 @@ TEST_F(Validate, WrongInputGetsOneLine) {
         std::pair{"validate run --atoms", "add --parameters SET"},
         std::pair{"validate run --with cnt-5-5-tersoff", "add --parameters SET"},
         std::pair{"validate run --parameters cnt-5-5-tersoff --budget 3", "add --atoms"},
-        std::pair{"validate report nowhere", "holds no results"}, std::pair{"parametrize", "tubes is required"},
+        std::pair{"validate report nowhere", "holds no results"},
+        std::pair{"parametrize", "tubes is required"},
         std::pair{"parametrize 7,3 7-4", "is \"7-4\""},
         std::pair{"parametrize 7,3 --potential tersof", "did you mean"},
         std::pair{"parametrize 7,3 --out file", "not a directory"},
         std::pair{"validate chart --scenes no-such-scene", "there is no scene"},
         std::pair{"validate chart --scenes tube-twist,rope7-m", "did you mean \"rope7-md\"?"},
         std::pair{"validate chart --quick --out file", "not a directory"},
-        std::pair{"validate chart --scene", "--scene"}, std::pair{"validate chart --scenes", "--scenes"}}) {
+        std::pair{"validate chart --scene", "--scene"},
+        std::pair{"validate chart --scenes", "--scenes"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
@@ -119,7 +122,8 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   for (const char* file : {".toml", "-stiffness.csv", "-contact.csv"})
     fs::copy(std::string(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff") + file, dir / "p");
   // Its friction belongs to this very set, whichever one it was shipped with.
-  const std::string own = "hash       = \"" + ropewalk::read_parameters((dir / "p/cnt-5-5-tersoff.toml").string()).hash + "\"";
+  const std::string own =
+      "hash       = \"" + ropewalk::read_parameters((dir / "p/cnt-5-5-tersoff.toml").string()).hash + "\"";
   spit(dir / "p/friction-5-5-5-5-tersoff.toml",
        std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/friction/friction-5-5-5-5-tersoff.toml"),
                           std::regex("(set_[ab]_)hash +=[^\n]*"), "$1" + own));
@@ -127,6 +131,8 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_NE(o.err.find("set kept"), std::string::npos) << o.err;
   EXPECT_NE(o.err.find("friction-5-5-5-5-tersoff: kept"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("3/3 validation of 1 set\n"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("  cnt-5-5-tersoff ended: 1 of 1, "), std::string::npos) << o.err;
   EXPECT_TRUE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/pair-sliding.csv"));
   EXPECT_FALSE(fs::exists(dir / "p/cnt-5-5-tersoff-atoms/crossed-tubes.csv"));
   const std::string page = slurp(dir / "p/report.html");

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "observe/loading.hpp"
 #include "run/run_directory.hpp"
 #include "scene/finer.hpp"
 #include "scene/random.hpp"
@@ -83,7 +84,7 @@ struct Longer {
     const Topology& of = slice.p.topology;
     const int n = slice.own, g = slice.images, long_strand = periods * n + 2 * g;
     const double turn = slice.load->schedule().value(0) * slice.load->period(),
-                 length = slice.load->length(of, slice.p.state);
+                 length = slice_length(of, slice.p.state);
     topology.types = of.types;
     topology.strand_begin = {0};
     topology.ends_meet = of.ends_meet;
@@ -357,7 +358,7 @@ TEST(PeriodicSlice, StrainFollowsTensionAndTensionStrain) {
     return s.read_gauges()[upper_end].force.z() / units::nN_nm;
   };
   const double stiff = 7 * slice.scene.parameters().bond.stretch / units::nN_nm;  // nN
-  const auto length = [&] { return slice.load->length(slice.p.topology, s.state()); };
+  const auto length = [&] { return slice_length(slice.p.topology, s.state()); };
   const double period = slice.load->period();
   // At rest the contact draws it together a little.
   EXPECT_NEAR(tension_after(48), 0, 0.01 * pull);

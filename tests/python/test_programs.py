@@ -106,6 +106,16 @@ class ProgramsTest(FolderTest):
         self.assertTrue(os.path.exists("run/errors.csv"))
         self.assertTrue(found)
 
+    def test_modes(self):
+        # A free tube under couples: a straight one is at rest, and its fastest motion is a helix from 8.987 EI/L = 79.2 nN nm on.
+        tube = {"rope": {"tubes": 1, "length_nm": 40.68}, "parameters": "cnt-10-10-paper",
+                "twist": {"moment_nN_nm": 1, "rate_nN_nm_per_ps": 0, "hold_ps": 1}}
+        found = ropewalk.modes(tube, count=3, shift_per_ns=30, anyway=True)
+        self.assertEqual(len(found["rate_per_ns"]), 3)
+        self.assertTrue((found["neutral"] == 1).all(), found)
+        run = ropewalk.run({**tube, "run": {"duration_ps": 0.1}}, "run")
+        self.assertEqual(len(ropewalk.modes(run, count=2, anyway=True)["rate_per_ns"]), 2)
+
     def test_rest(self):
         rope = {"rope": {"tubes": 7, "length_nm": 20.34}, "parameters": "cnt-10-10-paper",
                 "twist": {"moment_nN_nm": 35, "rate_nN_nm_per_ps": 1, "hold_ps": 2}}

@@ -15,6 +15,7 @@
 
 #include "atomistic/potential.hpp"
 #include "core/own_files.hpp"
+#include "io/clocks.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
@@ -78,19 +79,46 @@ int calibrate(const Place& place) {
   }
 }
 
+// Tells, on standard error, that a stage begins, and after each of its tasks how far it is.
+class Stage {
+ public:
+  Stage(const std::string& name, std::size_t tasks, bool quiet) : tasks_(tasks), quiet_(quiet) {
+    if (tasks > 0 && !quiet) fmt::print(stderr, "{}\n", name);
+  }
+  void ended(const std::string& task) {
+    ++done_;
+    if (quiet_) return;
+    const double passed = seconds_since(began_), each = passed / static_cast<double>(done_);
+    fmt::print(stderr, "  {} ended: {} of {}, {} passed{}\n", task, done_, tasks_, duration_text(passed),
+               done_ < tasks_
+                   ? fmt::format(", about {} left", duration_text(each * static_cast<double>(tasks_ - done_)))
+                   : "");
+  }
+
+ private:
+  std::size_t tasks_, done_ = 0;
+  bool quiet_;
+  double began_ = steady_seconds();
+};
+
 void calibrate_all(const std::vector<Place>& all, const ParametrizeArguments& a, int jobs) {
+  std::vector<Place> to_make;
+  for (const Place& place : all)
+    if (a.again || !fs::exists(place.file(".toml")))
+      to_make.push_back(place);
+    else if (!a.quiet)
+      fmt::print(stderr, "{}: set kept\n", place.name);
+  Stage stage(fmt::format("1/3 calibration from atoms: {} of {} sets to make", to_make.size(), all.size()),
+              to_make.size(), a.quiet);
   std::vector<ProcessTask> tasks;
-  for (const Place& place : all) {
-    if (!a.again && fs::exists(place.file(".toml"))) {
-      if (!a.quiet) fmt::print(stderr, "{}: set kept\n", place.name);
-      continue;
-    }
+  for (const Place& place : to_make) {
     fs::remove(place.file("-error.txt"));
     tasks.push_back({[place, &a] {
-                       if (!a.quiet) fmt::print(stderr, "{}: calibrating\n", place.name);
+                       if (!a.quiet) fmt::print(stderr, "  {}: calibrating\n", place.name);
                        return calibrate(place);
                      },
-                     [place, &a](int status) {
+                     [place, &stage](int status) {
+                       stage.ended(place.name);
                        if (status == 0 || fs::exists(place.file("-error.txt"))) return;
                        write_file_atomically(place.file("-error.txt"), death_words(status) + "\n");
                      }});
@@ -116,7 +144,8 @@ std::vector<PairPlace> pairs_of(const std::vector<Place>& all, const std::string
     for (std::size_t j = i; j < (which == "all" ? all.size() : i + 1); ++j) {
       if (all[i].potential != all[j].potential) continue;
       const Chirality a = calibrate::parse_chirality(all[i].tube), b = calibrate::parse_chirality(all[j].tube);
-      pairs.push_back({all[i], all[j], fmt::format("friction-{}-{}-{}-{}-{}", a.n, a.m, b.n, b.m, all[i].potential)});
+      pairs.push_back(
+          {all[i], all[j], fmt::format("friction-{}-{}-{}-{}-{}", a.n, a.m, b.n, b.m, all[i].potential)});
     }
   return pairs;
 }
@@ -153,7 +182,7 @@ int measure_friction(const PairPlace& pair) {
 }
 
 void measure_frictions(const std::vector<PairPlace>& pairs, const ParametrizeArguments& a, int jobs) {
-  std::vector<ProcessTask> tasks;
+  std::vector<PairPlace> to_measure;
   for (const PairPlace& pair : pairs) {
     if (!pair.has_sets()) continue;
     fs::remove(pair.file("-error.txt"));
@@ -167,15 +196,21 @@ void measure_frictions(const std::vector<PairPlace>& pairs, const ParametrizeArg
                             pair.name + ".toml was measured with other sets: take it away, or give --again\n");
       continue;
     }
+    to_measure.push_back(pair);
+  }
+  Stage stage(fmt::format("2/3 friction: {} of {} pairs to measure", to_measure.size(), pairs.size()),
+              to_measure.size(), a.quiet);
+  std::vector<ProcessTask> tasks;
+  for (const PairPlace& pair : to_measure)
     tasks.push_back({[pair, &a] {
-                       if (!a.quiet) fmt::print(stderr, "{}: measuring\n", pair.name);
+                       if (!a.quiet) fmt::print(stderr, "  {}: measuring\n", pair.name);
                        return measure_friction(pair);
                      },
-                     [pair](int status) {
+                     [pair, &stage](int status) {
+                       stage.ended(pair.name);
                        if (status == 0 || fs::exists(pair.file("-error.txt"))) return;
                        write_file_atomically(pair.file("-error.txt"), death_words(status) + "\n");
                      }});
-  }
   run_processes(tasks, jobs);
 }
 
@@ -204,7 +239,8 @@ ParametrizedTube validated(const Place& place, const ParametrizeArguments& a, in
   const Chirality c = calibrate::parse_chirality(place.tube);
   tube.tube = fmt::format("({},{})", c.n, c.m);
   if (!fs::exists(place.file(".toml"))) {
-    tube.error = fs::exists(place.file("-error.txt")) ? first_line(read_file(place.file("-error.txt"))) : "was interrupted";
+    tube.error =
+        fs::exists(place.file("-error.txt")) ? first_line(read_file(place.file("-error.txt"))) : "was interrupted";
     return tube;
   }
   tube.set = read_parameters(place.file(".toml"));
@@ -292,12 +328,16 @@ int parametrize_command(const ParametrizeArguments& a) {
   calibrate_all(all, a, jobs);
   measure_frictions(pairs, a, jobs);
   std::vector<ParametrizedTube> tubes;
+  Stage stage(fmt::format("3/3 validation of {} set{}", all.size(), all.size() == 1 ? "" : "s"), all.size(),
+              a.quiet);
   for (const Place& place : all) {
+    if (!a.quiet) fmt::print(stderr, "  {}: validating\n", place.name);
     tubes.push_back(validated(place, a, jobs));
     take_frictions(pairs, tubes.back());
     write_pages(tubes, all.size(), a.out);
     print_line(tubes.back());
     std::fflush(stdout);
+    stage.ended(place.name);
   }
   fmt::print("Report: {}/report.html; table: {}/tubes.csv\n", a.out, a.out);
   int code = 0;

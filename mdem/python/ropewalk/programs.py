@@ -400,6 +400,34 @@ def rest(
     return found
 
 
+def modes(
+    state: Run | SceneLike,
+    *,
+    count: int = 8,
+    shift_per_ns: float = 50,
+    anyway: bool = False,
+) -> dict[str, NDArray[Any]]:
+    """Which motions of a state at rest grow, how fast, and what they move, as `ropewalk modes`: columns (count,) by name, the fastest
+    growing motion first, units in the names.
+
+    Arguments:
+        state: a run, whose newest checkpoint counts; or a scene, a dict of its keys, or a file, at its start
+        count: motions to find (no unit)
+        shift_per_ns: those nearest to this rate (unit 1/ns), which should be above the largest
+        anyway: also for a state that does not rest
+    """
+    with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
+        path = os.path.join(folder, "modes.csv")
+        words = [f"--csv={path}", *_options(count=count, shift=shift_per_ns, anyway=anyway)]
+        if isinstance(state, Run):
+            _call(["modes", state.path, *words])
+        else:
+            with _scene_file(as_scene(state)) as scene:
+                _call(["modes", scene, *words])
+        with open(path, encoding="utf-8", newline="") as file:
+            return table_of(file.read())
+
+
 def parametrize(
     chiralities: Sequence[tuple[int, int]],
     out: str | os.PathLike[str] = "parametrized",

@@ -220,8 +220,6 @@ PeriodicLoad::Length PeriodicLoad::measured(const Topology& topology, const Stat
   return {sum.now / mass, sum.rate / mass};
 }
 
-double PeriodicLoad::length(const Topology& topology, const State& s) const { return measured(topology, s).now; }
-
 // A length that no tension has moved is that of its schedule to the last digit.
 PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift,
                                                 const State& s) const {

@@ -40,8 +40,6 @@ class PeriodicLoad : public Load {
   // Puts the images where they belong.
   void place(const Topology&, State&) const;
   double period() const { return period_; }  // nm, L0
-  // nm, of a state whose images stand where they belong.
-  double length(const Topology&, const State&) const;
   const Schedule& schedule() const { return schedule_; }
   double lasts() const;  // ps
 
