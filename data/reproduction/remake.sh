@@ -33,3 +33,5 @@ curves=twist_eV+bend_eV+vdw_eV,Q
   -o fig3.svg --force
 "$program" picture runs/fig4/points/moment_nN_nm-64 --at 94,250,400,694 --curves twist_eV+bend_eV,amplitude_nm --highest 120 \
   -o fig4.svg --force
+"$program" picture runs/helices/points/tubes-19_length_nm-271.2_moment_nN_nm-52_hold_ps-400 --at 300,400,500,660 --highest 110 \
+  -o helices.svg --force
