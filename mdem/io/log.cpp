@@ -81,6 +81,21 @@ std::string damping_words(const LogRow& row) {
                      100 * damping / lost, lost);
 }
 
+std::string strength_words(const std::vector<LogRow>& log) {
+  if (log.empty()) return "";
+  const double links = log.back()["links_broken"], bonds = log.back()["bonds_broken"];
+  if (!(links + bonds > 0)) return "";
+  const LogRow* most = nullptr;
+  for (const LogRow& row : log)
+    if (row["stress_GPa"] > (most ? (*most)["stress_GPa"] : 0)) most = &row;
+  if (!most) return "";
+  return fmt::format(
+      "Largest stress {:.3g} GPa ({:.3g} N/tex), at a strain of {:.3g}; {:.0f} of {:.0f} links and {:.0f} bonds of "
+      "tubes have broken.",
+      (*most)["stress_GPa"], (*most)["specific_stress_N_per_tex"], (*most)["ends_strain"], links,
+      log.back()["links_formed"], bonds);
+}
+
 std::string log_header() {
   std::string text;
   for (const Observable& column : observables()) text += (text.empty() ? "" : ",") + column.name;

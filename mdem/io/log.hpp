@@ -39,6 +39,10 @@ double potential_energy(const LogRow& row);
 // less is lost, or less than a tenth of it to damping.
 std::string damping_words(const LogRow& row);
 
+// The largest stress, with its strain, of a rope of which links or tubes have broken. Empty: nothing has, or no end
+// pulls.
+std::string strength_words(const std::vector<LogRow>& log);
+
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits
 

@@ -62,6 +62,7 @@ h3{font-size:.86rem;margin:0 0 .5em;font-weight:600}
 .kicker{margin:0;color:var(--soft);font-size:.82rem;letter-spacing:.04em}
 .lead{font-size:1.08rem}
 .soft,.none{color:var(--soft)}
+img{max-width:100%;height:auto}
 figure{margin:0 0 1.9em;min-width:0;break-inside:avoid}
 figcaption{font-size:.86rem;line-height:1.45;color:var(--soft);max-width:80ch;margin-top:.5em}
 figcaption b{color:var(--ink)}
@@ -100,7 +101,7 @@ figure,.pair figure{margin-bottom:.8em}figcaption{line-height:1.3}
 .pair{grid-template-columns:1fr 1fr;gap:0 18px}.pair svg{width:auto;max-width:100%;max-height:43mm}
 .views{display:grid;grid-template-columns:repeat(3,1fr);gap:6px 14px}.views svg{width:100%;height:auto}
 .row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto}
-details{display:none}.scroll{overflow:visible}
+details{display:none}.scroll{overflow:visible}.numbers td,.numbers th{white-space:normal}
 table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1px 8px 1px 0}tr{break-inside:avoid}
 .columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}
 .columns td:not(:first-child){overflow-wrap:normal}}

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/failure.hpp"
+#include "io/log.hpp"
 #include "model/error.hpp"
 #include "run/dynamics_loop.hpp"
 #include "run/plan_check.hpp"
@@ -76,10 +77,12 @@ RunResult Run::finish() {
   parts_.checkpoints.save_end();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
-  if (r.missing.empty())
+  if (r.missing.empty()) {
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
-  else
+    r.strength = strength_words(read_log(r.directory.log()));
+  } else {
     r.end = RunEnd::incomplete;
+  }
   return r;
 }
 
