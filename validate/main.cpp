@@ -49,6 +49,8 @@ void add_chart(CLI::App& app, Verbs& v) {
   chart->add_option("--scenes", v.chart.scenes, "Scenes, separated by commas [default: all]")->delimiter(',');
   chart->add_option("--out", v.chart.out, "Directory of points and chart; finished points in it are not run again")
       ->capture_default_str();
+  chart->add_option("--from", v.chart.from, "Draw the chart again from this points.csv; nothing is measured")
+      ->excludes(chart->get_option("--scenes"));
   chart->add_flag("--quick", v.chart.quick, "A few models of two scenes, or of the named ones");
   chart->add_flag("--instructions", v.chart.instructions,
                   "Also count instructions with callgrind (valgrind), for finished points too");

@@ -83,7 +83,10 @@ details{font-size:.82rem;margin-top:.5em}
 summary{cursor:pointer;color:var(--soft);width:max-content;max-width:100%}
 details p{margin:.5em 0;color:var(--soft)}
 .legend>span{display:inline-block;margin-right:1.1em}
-.scroll{overflow-x:auto}a{color:var(--c0)}
+.scroll{overflow-x:auto}.wide svg{min-width:640px}a{color:var(--c0)}
+math{font-family:"STIX Two Math","STIX Math","Latin Modern Math","Cambria Math","DejaVu Math TeX Gyre",math;
+font-size:1.05em;padding:.13em 0}
+mfrac>*{font-size:.84em}
 table{border-collapse:collapse;font-size:.82rem;line-height:1.4;font-variant-numeric:tabular-nums}
 th,td{padding:3px 14px 3px 0;text-align:left;vertical-align:top;border-bottom:1px solid var(--rule)}
 thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
@@ -101,7 +104,7 @@ figure,.pair figure{margin-bottom:.8em}figcaption{line-height:1.3}
 .pair{grid-template-columns:1fr 1fr;gap:0 18px}.pair svg{width:auto;max-width:100%;max-height:43mm}
 .views{display:grid;grid-template-columns:repeat(3,1fr);gap:6px 14px}.views svg{width:100%;height:auto}
 .row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto}
-details{display:none}.scroll{overflow:visible}.numbers td,.numbers th{white-space:normal}
+details{display:none}.scroll{overflow:visible}.wide svg{min-width:0}.numbers td,.numbers th{white-space:normal}
 table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1px 8px 1px 0}tr{break-inside:avoid}
 .columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}
 .columns td:not(:first-child){overflow-wrap:normal}}

@@ -8,18 +8,21 @@ namespace ropewalk {
 enum class Mark { dot, square, diamond, triangle, cross, star };
 inline constexpr int marks = 6;
 
-// How the points of a line are drawn, one by one.
+// How a line is drawn, or its points one by one.
 struct PointStyle {
   Mark mark = Mark::dot;
   std::vector<std::string> titles;  // what a reader sees who points at it
   std::vector<bool> hollow;         // may be shorter than the line
+  bool faint = false;               // pale, behind others
 };
 
 struct ScatterChart {
   LineChart chart;
   // Names beside the points of each line. Lists may be shorter than the lines, and names may be empty.
   std::vector<std::vector<std::string>> labels;
-  std::vector<PointStyle> styles = {};  // one each for the first lines; used by lines that are points
+  std::vector<PointStyle> styles = {};  // one each for the first lines; marks are those of lines that are points
+  // Names stand where they cover neither a named point nor another name. One without such a place is left out.
+  bool names_keep_apart = false;
 };
 
 // The mark alone, for legends: an <svg> element of 16 pixels.

@@ -269,13 +269,41 @@ std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
   return text;
 }
 
+// Shades the areas of filled lines, with their names at the centres of area.
+std::string draw_areas(const LineChart& chart, const Plot& plot) {
+  std::string text;
+  for (const ChartLine& line : chart.lines) {
+    if (!line.filled) continue;
+    for (const Stretch& s : stretches(line)) {
+      std::string d;
+      double twice = 0, x = 0, y = 0;  // moments of the triangles between each side and the first corner
+      const PagePoint first{plot.px(s[0].x), plot.py(s[0].y)};
+      PagePoint last = first;
+      for (const PagePoint& p : s) {
+        const PagePoint at{plot.px(p.x), plot.py(p.y)};
+        d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? "M" : "L", at.x, at.y);
+        const double part = (last.x - first.x) * (at.y - first.y) - (at.x - first.x) * (last.y - first.y);
+        twice += part;
+        x += part * (first.x + last.x + at.x) / 3;
+        y += part * (first.y + last.y + at.y) / 3;
+        last = at;
+      }
+      text += fmt::format("<path class=\"region e{}\" d=\"{}Z\"/>\n", colour_of(line), d);
+      if (twice != 0)
+        text += fmt::format("<text class=\"soft mid\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x / twice,
+                            y / twice + 4, escape_markup(line.name));
+    }
+  }
+  return text;
+}
+
 // Shades the area below each whole line. The name of the area below stands under the highest point of the first
 // line, the name of the area above over its lowest.
 std::string draw_regions(const LineChart& chart, const Plot& plot) {
   if (chart.below.empty()) return "";
   std::string text, names;
   for (const ChartLine& line : chart.lines) {
-    if (line.points || line.dashed) continue;
+    if (line.points || line.dashed || line.filled) continue;
     for (const Stretch& s : stretches(line)) {
       const double first = plot.px(s.front().x), last = plot.px(s.back().x);
       text += fmt::format("<path class=\"region e{}\" d=\"M{:.1f} {:.1f}", colour_of(line), first, plot.bottom);
@@ -310,7 +338,7 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
   std::vector<EndLabel> labels;
   for (const ChartLine& line : chart.lines) {
     const std::vector<Stretch> all = stretches(line);
-    if (all.empty()) continue;
+    if (all.empty() || line.filled) continue;
     const double y = plot.py(all.back().back().y);
     labels.push_back({&line, y, all.back().back().x, y});
   }
@@ -332,8 +360,65 @@ std::string stroke_class(const ChartLine& line) {
   return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
 }
 
+struct Box {
+  double left, right, top, bottom;
+
+  bool covers(const Box& b) const { return left < b.right && b.left < right && top < b.bottom && b.top < bottom; }
+};
+
+// A name at its point, and the box that it fills.
+struct PlacedName {
+  double x, y;
+  const char* anchor;  // class
+  Box box;
+};
+
+// The places beside, above and below a point at (x, y), best first.
+std::vector<PlacedName> places_about(double x, double y, double width) {
+  std::vector<PlacedName> places;
+  const auto add = [&](double dx, double baseline, const char* anchor) {
+    const double left = dx > 0 ? x + dx : dx < 0 ? x + dx - width : x - 0.5 * width;
+    places.push_back({x + dx, y + baseline, anchor, {left, left + width, y + baseline - 9, y + baseline + 2}});
+  };
+  for (const double baseline : {-4.0, 4.0, 12.0, -8.0, 16.0})
+    for (const auto& [dx, anchor] : {std::pair(7.0, ""), std::pair(-7.0, " end")}) add(dx, baseline, anchor);
+  add(0, -8, " mid");
+  add(0, 17, " mid");
+  return places;
+}
+
+// As draw_point_labels, with names that keep apart.
+std::string draw_names_apart(const ScatterChart& scatter, const Plot& plot) {
+  std::vector<Box> taken;
+  const auto each = [&](auto use) {
+    for (std::size_t l = 0; l < std::min(scatter.labels.size(), scatter.chart.lines.size()); ++l) {
+      const ChartLine& line = scatter.chart.lines[l];
+      for (std::size_t i = 0; i < std::min({scatter.labels[l].size(), line.x.size(), line.y.size()}); ++i)
+        if (std::isfinite(line.x[i]) && std::isfinite(line.y[i]))
+          use(scatter.labels[l][i], plot.px(line.x[i]), plot.py(line.y[i]));
+    }
+  };
+  each([&](const std::string&, double x, double y) { taken.push_back({x - 4, x + 4, y - 4, y + 4}); });
+  std::string text;
+  each([&](const std::string& name, double x, double y) {
+    if (name.empty()) return;
+    for (const PlacedName& p : places_about(x, y, text_width(name))) {
+      const bool inside = p.box.left >= plot.left && p.box.right <= plot.right && p.box.top >= plot.top &&
+                          p.box.bottom <= plot.bottom;
+      if (!inside || std::any_of(taken.begin(), taken.end(), [&](const Box& b) { return b.covers(p.box); }))
+        continue;
+      taken.push_back(p.box);
+      text += fmt::format("<text class=\"halo{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", p.anchor, p.x, p.y,
+                          escape_markup(name));
+      return;
+    }
+  });
+  return text;
+}
+
 // The names of single points.
 std::string draw_point_labels(const ScatterChart& scatter, const Plot& plot) {
+  if (scatter.names_keep_apart) return draw_names_apart(scatter, plot);
   std::string text;
   for (std::size_t l = 0; l < std::min(scatter.labels.size(), scatter.chart.lines.size()); ++l) {
     const ChartLine& line = scatter.chart.lines[l];
@@ -370,10 +455,11 @@ std::string mark_path(Mark mark, double x, double y) {
   return "";
 }
 
-std::string mark_element(const std::string& path, int colour, bool hollow, const std::string& title) {
+std::string mark_element(const std::string& path, int colour, bool hollow, bool faint, const std::string& title) {
   const std::string tip = title.empty() ? "" : "<title>" + escape_markup(title) + "</title>";
-  return fmt::format("<path class=\"mark {}\" d=\"{}\">{}</path>\n",
-                     hollow ? fmt::format("hollow c{}", colour) : fmt::format("e{}", colour), path, tip);
+  return fmt::format("<path class=\"mark {}{}\" d=\"{}\">{}</path>\n",
+                     hollow ? fmt::format("hollow c{}", colour) : fmt::format("e{}", colour), faint ? " faint" : "",
+                     path, tip);
 }
 
 std::string draw_marks(const ChartLine& line, const PointStyle& style, const Plot& plot) {
@@ -382,7 +468,7 @@ std::string draw_marks(const ChartLine& line, const PointStyle& style, const Plo
     if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
     const bool hollow = i < style.hollow.size() && style.hollow[i];
     text += mark_element(mark_path(style.mark, plot.px(line.x[i]), plot.py(line.y[i])), colour_of(line), hollow,
-                         i < style.titles.size() ? style.titles[i] : "");
+                         style.faint, i < style.titles.size() ? style.titles[i] : "");
   }
   return text;
 }
@@ -419,7 +505,8 @@ Plot layout(const ScatterChart& scatter) {
       scatter.chart.y.decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
   double ticks = 0, names = 0;
   for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
-  for (const ChartLine& line : chart.lines) names = std::max(names, text_width(line.name));
+  for (const ChartLine& line : chart.lines)
+    if (!line.filled) names = std::max(names, text_width(line.name));
   plot.left = ticks + 32;
   plot.right = chart.width - names - 35;
   plot.top = chart.bands.empty() ? 10 : 24;
@@ -535,7 +622,8 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .error{fill-opacity:.2;stroke:none}.region{fill-opacity:.1;stroke:none}
 .points{stroke-width:5.5}
 .mark{stroke:var(--paper);stroke-width:.6}.mark:hover{stroke:var(--ink);stroke-width:1.6}
-.hollow{fill:var(--paper);stroke-width:1.4}
+.hollow{fill:var(--paper);stroke-width:1.4}.faint{opacity:.3}
+.halo{paint-order:stroke;stroke:var(--paper);stroke-width:2.5px}
 .key{vertical-align:-3px}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
@@ -562,14 +650,17 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
-  text +=
-      draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot) + draw_regions(chart, plot);
+  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot) +
+          draw_regions(chart, plot) + draw_areas(chart, plot);
   for (std::size_t l = 0; l < chart.lines.size(); ++l) {
     const ChartLine& line = chart.lines[l];
+    if (line.filled) continue;
     if (line.points && l < scatter.styles.size())
       text += draw_marks(line, scatter.styles[l], plot);
     else
-      text += fmt::format("<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line), path_of(plot, line));
+      text +=
+          fmt::format("<path class=\"{}{}\" d=\"{}\"/>\n", stroke_class(line),
+                      l < scatter.styles.size() && scatter.styles[l].faint ? " faint" : "", path_of(plot, line));
   }
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
 }
@@ -602,7 +693,7 @@ std::string svg_file(const std::string& body, double width, double height) {
 
 std::string mark_svg(Mark mark, int colour, bool hollow) {
   return "<svg class=\"chart key\" viewBox=\"0 0 16 16\" width=\"16\" height=\"16\" aria-hidden=\"true\">" +
-         mark_element(mark_path(mark, 8, 8), colour, hollow, "") + "</svg>";
+         mark_element(mark_path(mark, 8, 8), colour, hollow, false, "") + "</svg>";
 }
 
 std::string chart_file(const ScatterChart& scatter) {

@@ -46,6 +46,7 @@ struct ChartLine {
   bool points = false;  // dots, not joined
   // A band about the line, as wide as this to either side; empty: none.
   std::vector<double> error = {};
+  bool filled = false;  // an area that the line goes round, with its name at the centre
 };
 
 struct ChartBand {

@@ -83,16 +83,22 @@ def demo_on_paper(browser, program, repository, folder):
 
 
 def chart_points(browser, repository):
-    """Every model of the chart has its points and its row."""
+    """Every model of the chart has its points and its row. The first figure has all scenes, in words."""
     browser.size(*pages.desk)
     browser.call("Emulation.setEmulatedMedia", media="")
     browser.open((repository / "data/chart/chart.html").as_uri())
     with open(repository / "data/chart/points.csv") as file:
-        scenes = {row["scene"] for row in csv.DictReader(file)}
+        rows = list(csv.DictReader(file))
+    scenes = {row["scene"] for row in rows}
     found = browser.value("""(marks => ({headings: document.querySelectorAll('h2').length, marks: marks.length,
       named: marks.filter(m => m.querySelector('title')).length}))([...document.querySelectorAll('figure .mark')])""")
     pages.expect(found["headings"] >= len(scenes), f"chart.html: {len(scenes)} scenes, {found['headings']} headings")
     pages.expect(found["marks"] > 500 and found["named"] == found["marks"], f"chart.html: points without a name: {found}")
+    single = {(row["scene"], row["model"]) for row in rows if row["kind"] not in ("finest", "combination") and not row["failure"]}
+    first = browser.value("[...document.querySelector('figure').querySelectorAll('.mark.faint title')].map(t => t.textContent)")
+    pages.expect(len(first) >= len(single), f"chart.html: {len(single)} models in scenes, {len(first)} marks in the first figure")
+    keys = [title for title in first if any(row["model"] + "," in title for row in rows if "-" in row["model"])]
+    pages.expect(not keys, f"chart.html: names that are no words: {keys[:3]}")
 
 
 # A value for every mark of every template: marks of the page in space, ends and begins of scripts and comments, an image.

@@ -11,6 +11,8 @@
 #include <set>
 #include <sstream>
 
+#include "chart/overview.hpp"
+#include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "scene/loads/twist.hpp"
@@ -26,7 +28,8 @@ constexpr const char* columns =
     "scene,model,kind,law,nodes_per_element,cutoff_nm,element_length_nm,integrator,time_step_fs,"
     "mass_scale,mode,contact_viscosity,bond_damping,precision,elements,simulated_ps,element_steps_per_ns,cpu_s_per_"
     "ns,"
-    "cpu_ns_per_element_step,instructions_per_element_step,observable,unit,value,reference,reference_kind,error";
+    "cpu_ns_per_element_step,instructions_per_element_step,observable,unit,value,reference,reference_kind,error,"
+    "failure";
 
 TEST(ParetoFront, KeepsWhatNothingBeatsInBoth) {
   //                                        0    1    2    3    4     5
@@ -76,7 +79,7 @@ TEST(ChartRows, HoldEveryModelToTheFinest) {
 
 TEST(ChartRows, AreWrittenWithTheColumnsThatReadersExpect) {
   const std::vector<ChartPoint> points = {made(finest_model, 10, 1), made(default_model, 11, 0.1)};
-  std::istringstream text(points_csv(chart_rows(points)));
+  std::istringstream text(points_csv(points, chart_rows(points)));
   std::string line;
   std::getline(text, line);
   EXPECT_EQ(line, columns);
@@ -85,7 +88,169 @@ TEST(ChartRows, AreWrittenWithTheColumnsThatReadersExpect) {
   for (; std::getline(text, line); ++rows) EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
   EXPECT_EQ(rows, 6);
   // 10 elements, 1000 steps in 50 ps, 0.1 s.
-  EXPECT_THAT(line = points_csv(chart_rows(points)), HasSubstr(",50,200000,2,1e+04,,energy,eV,11,10,finest,0.1\n"));
+  EXPECT_THAT(points_csv(points, chart_rows(points)),
+              HasSubstr(",50,200000,2,1e+04,,energy,eV,11,10,finest,0.1,\n"));
+}
+
+// --- All scenes in one ---
+
+TEST(ChartQuartiles, LieBetweenNeighboursInOrder) {
+  const Quartiles five = quartiles({5, 1, 4, 2, 3}), four = quartiles({40, 10, 20, 30}), one = quartiles({7});
+  EXPECT_DOUBLE_EQ(five.lower, 2);
+  EXPECT_DOUBLE_EQ(five.median, 3);
+  EXPECT_DOUBLE_EQ(five.upper, 4);
+  EXPECT_DOUBLE_EQ(four.lower, 17.5);
+  EXPECT_DOUBLE_EQ(four.median, 25);
+  EXPECT_DOUBLE_EQ(four.upper, 32.5);
+  EXPECT_EQ(one.lower, 7);
+  EXPECT_EQ(one.median, 7);
+  EXPECT_EQ(one.upper, 7);
+  EXPECT_THROW(quartiles({}), std::invalid_argument);
+}
+
+// Energies of 10 are right in all scenes; the end moment is off as the energy, the bending moment by `bending`.
+ChartPoint made_in(const std::string& scene, const std::string& model, double energy, double cpu,
+                   double bending = 1) {
+  ChartPoint p = made(model, energy, cpu);
+  p.scene = scene;
+  if (scene == "tube-twist") p.values.erase("bending_moment");
+  if (scene == "film") p.values.erase("end_moment");
+  if (scene != "tube-twist") p.values["bending_moment"] = bending;
+  return p;
+}
+
+TEST(ChartOverview, HoldsEveryModelToTheDefaultOfItsScene) {
+  std::vector<ChartPoint> points = {made_in("tube-twist", finest_model, 10, 8),
+                                    made_in("tube-twist", default_model, 10.1, 1),
+                                    made_in("tube-twist", "length-2", 10.3, 0.5),
+                                    made_in("film", finest_model, 10, 80),
+                                    made_in("film", default_model, 10.2, 10),
+                                    made_in("film", "length-2", 9.9, 8, 1.2),
+                                    made_in("ring", finest_model, 10, 4),
+                                    made_in("ring", default_model, 10.4, 2),
+                                    made_in("ring", "length-2", 10.5, 0.2),
+                                    made_in("ring", "hooke", 10, 3, 0.5),
+                                    made_in("ring", "relax", 10, 3)};
+  points.back().error = "it did not come to rest";
+  points.back().values.clear();
+  ChartPoint torn = made_in("film", "hooke", 10, 1);
+  torn.error = "it blew up";
+  torn.values.clear();
+  points.push_back(torn);
+  const std::vector<ModelPlaces> all = places_over_scenes(points, chart_rows(points));
+  ASSERT_EQ(all.size(), 3u) << "neither the finest, which is the reference, nor what could be run nowhere";
+
+  const ModelPlaces& ours = all[0];
+  EXPECT_EQ(ours.model, default_model);
+  EXPECT_DOUBLE_EQ(ours.cost.lower, 1);
+  EXPECT_DOUBLE_EQ(ours.cost.upper, 1);
+  EXPECT_NEAR(ours.error.median, 0.02, 1e-12) << "of 0.01, 0.02 and 0.04";
+  EXPECT_EQ(worth_of(ours), Worth::like_the_default);
+
+  const ModelPlaces& longer = all[1];
+  EXPECT_EQ(longer.model, "length-2");
+  EXPECT_EQ(longer.words, "element length × 2");
+  ASSERT_EQ(longer.scenes.size(), 3u);
+  EXPECT_NEAR(longer.cost.median, 0.5, 1e-12) << "of 0.5, 0.8 and 0.1, each over its own default";
+  EXPECT_NEAR(longer.cost.lower, 0.3, 1e-12);
+  EXPECT_NEAR(longer.cost.upper, 0.65, 1e-12);
+  EXPECT_NEAR(longer.error.median, 0.05, 1e-12) << "of 0.03, 0.2 and 0.05: the largest of the observables";
+  EXPECT_NEAR(longer.error.lower, 0.04, 1e-12);
+  EXPECT_NEAR(longer.error.upper, 0.125, 1e-12);
+  EXPECT_NEAR(longer.default_error, 0.02, 1e-12);
+  EXPECT_EQ(longer.worst().point->scene, "film");
+  EXPECT_EQ(longer.worst().observable, "bending_moment");
+  EXPECT_EQ(worth_of(longer), Worth::cheap_at_a_price) << "0.05 is more than twice 0.02";
+
+  const ModelPlaces& hooke = all[2];
+  EXPECT_EQ(hooke.scenes.size(), 1u);
+  EXPECT_THAT(hooke.failed, ElementsAre("film"));
+  EXPECT_NEAR(hooke.default_error, 0.04, 1e-12) << "of the default in the ring alone";
+  EXPECT_EQ(worth_of(hooke), Worth::wrong) << "half of the bending moment is missing";
+}
+
+TEST(ChartOverview, TellsCheapFromDear) {
+  const auto worth = [](double cost, double error) {
+    ModelPlaces m;
+    m.cost.median = cost;
+    m.error.median = error;
+    m.default_error = 0.01;
+    return worth_of(m);
+  };
+  EXPECT_EQ(worth(0.6, 0.019), Worth::cheap_and_right);
+  EXPECT_EQ(worth(0.6, 0.021), Worth::cheap_at_a_price);
+  EXPECT_EQ(worth(0.6, 0.11), Worth::wrong);
+  EXPECT_EQ(worth(3, 0.11), Worth::wrong);
+  EXPECT_EQ(worth(3, 0.004), Worth::dear_and_better);
+  EXPECT_EQ(worth(3, 0.01), Worth::dear_for_nothing);
+  EXPECT_EQ(worth(1.05, 0.01), Worth::like_the_default);
+}
+
+TEST(ChartOverview, ComesFirstAndNamesModelsInWords) {
+  std::vector<ChartPoint> points = {made_in("ring", finest_model, 10, 8),
+                                          made_in("ring", default_model, 10.1, 1),
+                                          made_in("ring", "length-2", 10.15, 0.5)};
+  points.back().kind = "element_length";
+  const std::string page = chart_page(points, chart_rows(points), {});
+  const std::size_t first = page.find("<figure>"), end = page.find("<h2>");
+  ASSERT_LT(first, end);
+  const std::string part = page.substr(first, end - first);
+  EXPECT_EQ(part.find("<figure>", 1), std::string::npos) << "one figure before everything else";
+  EXPECT_THAT(part, HasSubstr("All 1 scenes in one"));
+  EXPECT_THAT(
+      part,
+      HasSubstr("Cheap, and at most twice as far off as the default:</b> element length × 2 (0.5; 1.5\u00a0%"));
+  EXPECT_EQ(part.find("length-2"), std::string::npos) << "keys are for tables";
+  EXPECT_THAT(page, HasSubstr("<td>length-2</td>"));
+}
+
+// --- The table of points, drawn again ---
+
+TEST(ChartTable, ComesBackFromItsFile) {
+  const std::string shipped = data_directory() + "/chart/points.csv";
+  const ChartTable table = read_points_csv(shipped);
+  std::size_t failed = 0;
+  for (const ChartPoint& p : table.points) failed += p.error.empty() ? 0 : 1;
+  EXPECT_EQ(table.points.size(), 426u);
+  EXPECT_EQ(failed, 18u);
+  std::istringstream before(read_file(shipped)), after(points_csv(table.points, table.rows));
+  for (std::string b, a; std::getline(before, b);) {
+    ASSERT_TRUE(std::getline(after, a));
+    // The cost of a step of one element follows from two rounded numbers.
+    std::vector<std::string> old_cells, new_cells;
+    for (auto [line, cells] : {std::pair(&b, &old_cells), std::pair(&a, &new_cells)}) {
+      std::istringstream text(*line);
+      for (std::string cell; std::getline(text, cell, ',');) cells->push_back(cell);
+    }
+    ASSERT_EQ(new_cells.size(), old_cells.size()) << b;
+    for (std::size_t k = 0; k < old_cells.size(); ++k)
+      if (k == 18 && old_cells[0] != "scene" && !old_cells[k].empty())
+        EXPECT_NEAR(std::stod(new_cells[k]) / std::stod(old_cells[k]), 1, 2e-3) << b;
+      else
+        EXPECT_EQ(new_cells[k], old_cells[k]) << b;
+  }
+}
+
+TEST(ChartTable, ThatIsDamagedIsRefused) {
+  const std::vector<ChartPoint> points = {made_in("ring", finest_model, 10, 8),
+                                          made_in("ring", default_model, 10.1, 1)};
+  const std::string good = points_csv(points, chart_rows(points));
+  const std::string path = (fs::temp_directory_path() / ("ropewalk-table-" + std::to_string(getpid()))).string();
+  write_file_atomically(path, good);
+  EXPECT_EQ(read_points_csv(path).rows.size(), 6u);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  for (const std::string& bad :
+       {std::string(), changed("scene,model", "model,scene"), changed("ring,default", "ring,no-such-model"),
+        changed("ring,finest", "no-such-scene,finest"), changed("eV,10.1", "eV,ten"),
+        changed("bending_moment", "no_such_moment"), changed(",energy,", ",energy,,")}) {
+    write_file_atomically(path, bad);
+    EXPECT_THROW(read_points_csv(path), InputError) << bad;
+  }
+  fs::remove(path);
 }
 
 TEST(ChartPoint, ComesBackFromItsFile) {
@@ -175,10 +340,15 @@ TEST(ChartScenes, ARopeIsTwistedByAMoment) {
 }
 
 TEST(ChartModels, HaveNamesOfTheirOwn) {
+  std::map<std::string, std::string> named;  // by words
   for (const ChartScene& scene : chart_scenes()) {
     std::set<std::string> names;
-    for (const ChartModel& model : chart_models(scene, false))
+    for (const ChartModel& model : chart_models(scene, false)) {
       EXPECT_TRUE(names.insert(model.name).second) << scene.name << " " << model.name << " twice";
+      EXPECT_FALSE(model.words.empty()) << model.name;
+      EXPECT_EQ(model_words(model.name), model.words) << scene.name << ": the same words in every scene";
+      EXPECT_TRUE(named.emplace(model.words, model.name).first->second == model.name) << model.words;
+    }
     if (scene.published) {
       EXPECT_NO_THROW(find_chart_model(chart_models(scene, true), published_model)) << scene.name;
     }
@@ -235,6 +405,23 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
   EXPECT_THAT(page, HasSubstr("Pareto front"));
   EXPECT_THAT(page, HasSubstr("Against the published model"));
   EXPECT_EQ(page.find("<script"), std::string::npos);
+
+  // From the table alone comes the same page, but for digits that the table does not have.
+  ChartArguments again;
+  again.from = (dir / "points.csv").string();
+  again.out = (dir / "again").string();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(chart_command(again), 0);
+  testing::internal::GetCapturedStdout();
+  const auto count = [](const std::string& text, const std::string& part) {
+    int n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+  };
+  const std::string drawn = read_file((dir / "again" / "chart.html").string());
+  for (const char* part : {"<figure>", "class=\"mark", "<tr>", "<h2>"})
+    EXPECT_EQ(count(drawn, part), count(page, part));
+  EXPECT_FALSE(fs::exists(dir / "again" / "points")) << "nothing is measured";
 
   // A second run keeps all points but the one that another program made.
   const std::string kept = read_file(point(default_model));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "report/formula.hpp"
 #include "validate/support.hpp"
 
 namespace ropewalk::validate {
@@ -59,6 +60,29 @@ void expect_texts(const Case& c) {
   EXPECT_FALSE(c.turns_red.empty()) << c.name << ": a case that no fault turns red tests nothing";
 }
 
+// Pieces between backquotes are formulas or one word, as in `auto`.
+void expect_formulas(const std::string& text) {
+  EXPECT_EQ(std::count(text.begin(), text.end(), '`') % 2, 0) << text;
+  const std::string html = with_formulas(text);
+  for (std::size_t at = 0; (at = html.find("<code>", at)) != std::string::npos;) {
+    at += 6;
+    const std::string code = html.substr(at, html.find("</code>", at) - at);
+    EXPECT_EQ(code.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), std::string::npos) << code << " in: " << text;
+  }
+}
+
+void expect_formulas(const Case& c, const CaseResult& result) {
+  for (const std::string& text : {c.why, c.setup, c.oracle}) expect_formulas(text);
+  for (const std::string& text : result.remarks) expect_formulas(text);
+  for (const CaseFigure& figure : result.figures) {
+    expect_formulas(figure.caption);
+    for (const ChartLine& line : figure.chart.lines)
+      EXPECT_EQ(line.name.find('`'), std::string::npos) << "a drawing has no formulas: " << line.name;
+  }
+  for (const Limit& l : result.limits) expect_formulas(l.method + l.how);
+  for (const Check& check : result.checks) expect_formulas(check.name + check.note);
+}
+
 void expect_figures_and_sources(const Case& c, const CaseResult& result) {
   const std::size_t least = c.group == Case::Group::atoms ? 2 : 1;
   EXPECT_GE(result.figures.size(), least);
@@ -97,6 +121,7 @@ TEST_P(ValidationCase, HoldsAndExplainsItself) {
     ASSERT_NE(at, result.checks.end()) << "there is no check \"" << known.check << "\"";
     EXPECT_GT(std::fabs(at->difference()), at->tolerance) << known.check << " is no miss";
   }
+  expect_formulas(c, result);
   expect_figures_and_sources(c, result);
   expect_limits(c, result);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/checks.hpp"
 #include "core/reference.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
@@ -125,13 +126,21 @@ TEST(ValidationOutcome, ComesBackFromItsFile) {
   f.chart.y = {"energy", "eV"};
   f.chart.lines = {{"model", {0, 1, 2}, {0, std::nan(""), 4}, 1}};
   f.chart.lines[0].points = true;
+  f.labels = {{"first", "", "third"}};
+  f.chart.lines.push_back({"stable", {0, 2, 2}, {0, 0, 4}});
+  f.chart.lines[1].filled = true;
   o.result.figures = {f};
   o.result.limits = {{"time step", 66, 65, "fs", Limit::Guard::refused, "above the estimate"}};
   const std::string path = (std::filesystem::temp_directory_path() / "ropewalk-outcome.json").string();
   write_file_atomically(path, outcome_json(o));
   const Outcome back = read_outcome(path);
   EXPECT_EQ(outcome_json(back), outcome_json(o));
-  EXPECT_TRUE(std::isnan(back.result.figures[0].chart.lines[0].y[1]));
+  const CaseFigure& drawn = back.result.figures[0];
+  EXPECT_TRUE(std::isnan(drawn.chart.lines[0].y[1]));
+  EXPECT_FALSE(drawn.chart.lines[0].filled);
+  EXPECT_TRUE(drawn.chart.lines[1].filled);
+  EXPECT_EQ(drawn.labels, f.labels);
+  EXPECT_THAT(validation_page({back}, {}), HasSubstr(">third</text>"));
   write_file_atomically(path, "{}");
   EXPECT_THROW(read_outcome(path), InputError);
   std::filesystem::remove(path);
@@ -147,6 +156,23 @@ TEST(ValidationPage, TellsTheVerdictFirstAndEscapes) {
   EXPECT_THAT(bad, HasSubstr("✗ misses"));
   EXPECT_LT(bad.find("✗ misses"), bad.find("<section"));
   EXPECT_THAT(bad, Not(HasSubstr("<script")));
+}
+
+TEST(ValidationPage, SetsFormulasOfAllItsTexts) {
+  Outcome o = outcome_with({check(1, 1, 0.1)});
+  o.result.checks[0].note = "note `a^2`";
+  o.result.remarks = {"remark `b^2`"};
+  o.result.figures.push_back(
+      case_figure("Figure", {"x", ""}, {"y", ""}, "caption `c^2`", {model_points("points", {0, 1}, {0, 1})}));
+  o.result.limits = {{"method `d^2`", 102, 100, "fs", Limit::Guard::stopped, "how `e^2`"}};
+  const std::string page = validation_page({o}, {});
+  for (const char* words : {"note a", "remark b", "caption c", "method d", "how e"}) {
+    const std::string text = words, letter = text.substr(text.size() - 1);
+    EXPECT_THAT(page, HasSubstr(text.substr(0, text.size() - 1) + "<math><msup><mi>" + letter +
+                                "</mi><mn>2</mn></msup></math>"));
+  }
+  // The oracle of the case itself.
+  EXPECT_THAT(page, HasSubstr("<b>Oracle.</b> <math>"));
 }
 
 TEST(ValidationPage, DrawsTheLimitsOnAMap) {

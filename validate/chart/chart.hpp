@@ -34,6 +34,7 @@ namespace ropewalk::validate {
 
 struct ChartModel {
   std::string name, kind;  // kind: the setting that is varied
+  std::string words;       // what a reader is told instead of the name
   std::string set;         // parameter set; empty: the scene's
   std::string law = "line";
   int nodes = 0;  // per element; 0: as line_nodes chooses
@@ -122,6 +123,8 @@ const ChartScene& find_chart_scene(const std::string& name);
 std::vector<ChartModel> chart_models(const ChartScene& scene, bool quick);
 const ChartModel& find_chart_model(const std::vector<ChartModel>& models, const std::string& name);
 
+// "twist angle beta" for "beta", ...
+std::string observable_title(const std::string& observable);
 // "eV" for "energy", ...
 std::string observable_unit(const std::string& observable);
 
@@ -162,14 +165,27 @@ double error_of(const std::string& observable, double value, double reference);
 std::vector<std::size_t> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
 std::vector<OutputColumn> points_columns();
-std::string points_csv(const std::vector<ChartRow>& rows);
-std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<std::string>& facts);
+// Rows of each point, in the order of the points, and one row for each that failed.
+std::string points_csv(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows);
+
+// Points and rows as they stand in a points.csv: costs, values and errors to its digits.
+struct ChartTable {
+  std::vector<ChartPoint> points;
+  std::vector<ChartRow> rows;  // of these points
+};
+// Throws InputError where the file is no such table, or has models that this program does not know.
+ChartTable read_points_csv(const std::string& path);
+
+// `rows` are those of `points`; the facts say how the page was made.
+std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows,
+                       const std::vector<std::string>& facts);
 
 // --- The verb ---
 
 struct ChartArguments {
   std::vector<std::string> scenes;  // empty: all
   std::string out = "chart";
+  std::string from;  // a points.csv to draw, without measuring
   bool quick = false;
   bool instructions = false;
   bool again = false;

@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "chart/chart.hpp"
+#include "io/csv_reader.hpp"
+#include "model/error.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -92,24 +94,133 @@ std::vector<OutputColumn> points_columns() {
       {"reference", "`unit`", "value of the reference"},
       {"reference_kind", "", "finest: the finest model; md: atoms"},
       {"error", "", "difference of value and reference over the reference"},
+      {"failure", "", "why the model could not be run; such a row has no cost and no values"},
   };
 }
 
-std::string points_csv(const std::vector<ChartRow>& rows) {
+std::string points_csv(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows) {
   std::string text = column_names(points_columns()) + "\n";
-  for (const ChartRow& r : rows) {
-    const ChartPoint& p = *r.point;
-    text += fmt::format(
-        "{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{:g},{},{:g},{:g},{},{},{:g},{:.6g},{:.4g},{:.4g},{},{},{},{:."
-        "8g},"
-        "{:.8g},{},{:.4g}\n",
-        p.scene, p.model, p.kind, p.law, p.nodes, p.cutoff, p.element_length, p.integrator,
-        p.time_step / units::fs, p.mass_scale, p.mode, p.contact_viscosity, p.bond_damping, p.precision, p.elements,
-        p.simulated, p.element_steps_per_ns(), p.cpu_per_ns(), 1e9 * p.cpu_per_element_step(),
-        p.instructions ? fmt::format("{:.5g}", *p.instructions) : "", r.observable, observable_unit(r.observable),
-        r.value, r.reference, r.reference_kind, r.error);
+  const auto settings = [](const ChartPoint& p) {
+    return fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{:g},{},{:g},{:g},{},{},{:g}", p.scene, p.model,
+                       p.kind, p.law, p.nodes, p.cutoff, p.element_length, p.integrator, p.time_step / units::fs,
+                       p.mass_scale, p.mode, p.contact_viscosity, p.bond_damping, p.precision, p.elements,
+                       p.simulated);
+  };
+  for (const ChartPoint& p : points) {
+    if (!p.error.empty()) text += fmt::format("{},,,,,,,,,,,{}\n", settings(p), csv_cell(p.error));
+    for (const ChartRow& r : rows)
+      if (r.point == &p)
+        text += fmt::format("{},{:.6g},{:.4g},{:.4g},{},{},{},{:.8g},{:.8g},{},{:.4g},\n", settings(p),
+                            p.element_steps_per_ns(), p.cpu_per_ns(), 1e9 * p.cpu_per_element_step(),
+                            p.instructions ? fmt::format("{:.5g}", *p.instructions) : "", r.observable,
+                            observable_unit(r.observable), r.value, r.reference, r.reference_kind, r.error);
   }
   return text;
+}
+
+namespace {
+
+// The cells of a row by the names of their columns.
+class PointCells {
+ public:
+  explicit PointCells(const CsvReader& csv) : csv_(csv) {}
+
+  std::string text(const char* column) const { return std::string(csv_.cells()[at(column)]); }
+  double number(const char* column) const { return csv_.finite_number(at(column), column); }
+  int whole(const char* column) const {
+    const double v = number(column);
+    if (v != std::floor(v) || std::fabs(v) > 1e9) csv_.fail(column, "is not a whole number", "restore the file");
+    return static_cast<int>(v);
+  }
+
+ private:
+  static std::size_t at(const std::string& column) {
+    static const std::vector<OutputColumn> columns = points_columns();
+    std::size_t k = 0;
+    while (columns[k].name != column) ++k;
+    return k;
+  }
+  const CsvReader& csv_;
+};
+
+// Whether this program has such a model, which the page names in words.
+bool is_known(const ChartPoint& p) {
+  for (const ChartScene& scene : chart_scenes())
+    if (scene.name == p.scene)
+      for (const ChartModel& m : chart_models(scene, false))
+        if (m.name == p.model) return m.kind == p.kind;
+  return false;
+}
+
+bool has_observable(const std::string& scene, const std::string& observable) {
+  const std::vector<std::string>& all = find_chart_scene(scene).observables;
+  return std::count(all.begin(), all.end(), observable) > 0;
+}
+
+ChartPoint point_of(const PointCells& cells) {
+  ChartPoint p;
+  p.scene = cells.text("scene");
+  p.model = cells.text("model");
+  p.kind = cells.text("kind");
+  p.law = cells.text("law");
+  p.nodes = cells.whole("nodes_per_element");
+  p.cutoff = cells.number("cutoff_nm");
+  p.element_length = cells.number("element_length_nm");
+  p.integrator = cells.text("integrator");
+  p.time_step = cells.number("time_step_fs") * units::fs;
+  p.mass_scale = cells.number("mass_scale");
+  p.mode = cells.text("mode");
+  p.contact_viscosity = cells.number("contact_viscosity");
+  p.bond_damping = cells.number("bond_damping");
+  p.precision = cells.text("precision");
+  p.elements = cells.whole("elements");
+  p.simulated = cells.number("simulated_ps");
+  p.error = cells.text("failure");
+  if (!p.error.empty()) return p;
+  p.steps = cells.number("element_steps_per_ns") * 1e-3 * p.simulated / p.elements;
+  p.cpu = cells.number("cpu_s_per_ns") * 1e-3 * p.simulated;
+  if (!cells.text("instructions_per_element_step").empty())
+    p.instructions = cells.number("instructions_per_element_step");
+  return p;
+}
+
+}  // namespace
+
+ChartTable read_points_csv(const std::string& path) {
+  CsvReader csv(path);
+  const std::string names = csv.next() ? std::string(csv.line_text()) : "";
+  if (names != column_names(points_columns()))
+    throw InputError({path, 1, ""}, "is not a table of points of this chart",
+                     "give a points.csv that `ropewalk validate chart` has written");
+  ChartTable table;
+  std::vector<std::size_t> point_of_row;
+  const PointCells cells(csv);
+  while (csv.next()) {
+    if (csv.cells().size() != points_columns().size())
+      csv.fail("", "has another number of cells than there are columns", "restore the file");
+    const ChartPoint p = point_of(cells);
+    const bool known =
+        !table.points.empty() && table.points.back().scene == p.scene && table.points.back().model == p.model;
+    if (!known) {
+      if (!is_known(p)) csv.fail("model", "is not a model of this program", "measure the chart anew");
+      table.points.push_back(p);
+    }
+    if (!p.error.empty()) continue;
+    if (!(p.elements > 0 && p.simulated > 0 && p.cpu > 0)) csv.fail("", "has no cost", "restore the file");
+    ChartRow r;
+    r.observable = cells.text("observable");
+    if (!has_observable(p.scene, r.observable))
+      csv.fail("observable", "is not measured in this scene", "restore the file");
+    r.value = cells.number("value");
+    r.reference = cells.number("reference");
+    r.reference_kind = cells.text("reference_kind");
+    r.error = cells.number("error");
+    table.points.back().values[r.observable] = r.value;
+    table.rows.push_back(r);
+    point_of_row.push_back(table.points.size() - 1);
+  }
+  for (std::size_t k = 0; k < table.rows.size(); ++k) table.rows[k].point = &table.points[point_of_row[k]];
+  return table;
 }
 
 }  // namespace ropewalk::validate

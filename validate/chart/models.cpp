@@ -18,24 +18,29 @@ namespace {
 
 using Precision = Interaction::Precision;
 
+// Words of models that turn one setting, and of those that turn several.
+constexpr const char *longer = "element length × {:g}", *heavier = "masses × {:g}", *nearer = "cutoff {:g} nm",
+                     *relaxed_stepwise = "relaxed in increments", *relaxed_at_once = "relaxed at once";
+
 template <class F>
-ChartModel varied(const std::string& kind, const std::string& name, F change) {
+ChartModel varied(const std::string& kind, const std::string& name, const std::string& words, F change) {
   ChartModel m;
   m.name = name;
+  m.words = words;
   m.kind = kind;
   change(m);
   return m;
 }
 
 void add_anchors(std::vector<ChartModel>& all) {
-  all.push_back(varied("finest", finest_model, [](ChartModel& m) {
+  all.push_back(varied("finest", finest_model, "finest model", [](ChartModel& m) {
     m.length = 0.5;
     m.precision = Precision::full;
     m.step_fraction = 0.5;
   }));
-  all.push_back(varied("default", default_model, [](ChartModel&) {}));
+  all.push_back(varied("default", default_model, "default", [](ChartModel&) {}));
   // Its programs calculate in double precision; its papers give 20 fs.
-  all.push_back(varied("published", published_model, [](ChartModel& m) {
+  all.push_back(varied("published", published_model, "published model", [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
     m.law = "paper";
     m.precision = Precision::full;
@@ -43,47 +48,60 @@ void add_anchors(std::vector<ChartModel>& all) {
   }));
 }
 
-// One model for each value of a setting.
+// One model for each value of a setting; `name` and `words` hold it.
 template <class T>
-void vary(std::vector<ChartModel>& all, const char* kind, const char* name, T ChartModel::*setting,
-          std::initializer_list<T> values) {
+void vary(std::vector<ChartModel>& all, const char* kind, const char* name, const char* words,
+          T ChartModel::*setting, std::initializer_list<T> values) {
   for (const T value : values)
-    all.push_back(varied(kind, fmt::format(fmt::runtime(name), value), [&](ChartModel& m) { m.*setting = value; }));
+    all.push_back(varied(kind, fmt::format(fmt::runtime(name), value), fmt::format(fmt::runtime(words), value),
+                         [&](ChartModel& m) { m.*setting = value; }));
 }
 
 void add_single_tube_knobs(std::vector<ChartModel>& all) {
-  vary(all, "element_length", "length-{:g}", &ChartModel::length, {0.5, 2.0, 4.0, 8.0});
-  vary(all, "time_step", "step-{:g}", &ChartModel::step_fraction, {0.3, 0.6});
-  all.push_back(varied("integrator", "rk4", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
-  vary(all, "mass_scale", "mass-{:g}", &ChartModel::mass_scale, {4.0, 16.0, 64.0});
-  all.push_back(varied("mode", "relax", [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
-  all.push_back(varied("bond", "hooke", [](ChartModel& m) { m.hooke = true; }));
-  vary(all, "bond_damping", "bond-damping-{:g}", &ChartModel::bond_damping, {0.0, 4.0});
+  vary(all, "element_length", "length-{:g}", longer, &ChartModel::length, {0.5, 2.0, 4.0, 8.0});
+  vary(all, "time_step", "step-{:g}", "time step {:g} of its limit", &ChartModel::step_fraction, {0.3, 0.6});
+  all.push_back(
+      varied("integrator", "rk4", "Runge-Kutta steps", [](ChartModel& m) { m.stepping.runge_kutta = true; }));
+  vary(all, "mass_scale", "mass-{:g}", heavier, &ChartModel::mass_scale, {4.0, 16.0, 64.0});
+  all.push_back(varied("mode", "relax", relaxed_stepwise, [](ChartModel& m) { m.mode = RunOptions::Mode::relax; }));
+  all.push_back(varied("bond", "hooke", "Hooke's bonds", [](ChartModel& m) { m.hooke = true; }));
+  vary(all, "bond_damping", "bond-damping-{:g}", "no damping of bonds", &ChartModel::bond_damping, {0.0});
+  vary(all, "bond_damping", "bond-damping-{:g}", "damping of bonds × {:g}", &ChartModel::bond_damping, {4.0});
 }
 
 void add_contact_knobs(std::vector<ChartModel>& all) {
   // In a single tube only the grips would turn, by more than a bond bears.
-  all.push_back(varied("mode", "relax-at-once", [](ChartModel& m) {
+  all.push_back(varied("mode", "relax-at-once", relaxed_at_once, [](ChartModel& m) {
     m.mode = RunOptions::Mode::relax;
     m.at_once = true;
   }));
-  all.push_back(varied("law", "isotropic", [](ChartModel& m) { m.nodes = 1; }));
-  all.push_back(varied("law", "paper", [](ChartModel& m) { m.law = "paper"; }));
-  all.push_back(varied("law", "published-mixed", [](ChartModel& m) {
+  all.push_back(varied("law", "isotropic", "isotropic contact: one node", [](ChartModel& m) { m.nodes = 1; }));
+  all.push_back(
+      varied("law", "paper", "published law fitted to the same tube", [](ChartModel& m) { m.law = "paper"; }));
+  all.push_back(varied("law", "published-mixed", "published model in mixed precision", [](ChartModel& m) {
     m.set = "cnt-10-10-paper";
     m.law = "paper";
   }));
-  vary(all, "nodes_per_element", "nodes-{}", &ChartModel::nodes, {2, 3, 4, 6, 8});
-  vary(all, "cutoff", "cutoff-{:g}", &ChartModel::cutoff, {2.6, 2.4, 2.2});
-  vary(all, "contact_viscosity", "viscosity-{:g}", &ChartModel::contact_viscosity, {0.0, 5.0, 80.0});
-  all.push_back(varied("precision", "double", [](ChartModel& m) { m.precision = Precision::full; }));
+  vary(all, "nodes_per_element", "nodes-{}", "{} nodes", &ChartModel::nodes, {2, 3, 4, 6, 8});
+  vary(all, "cutoff", "cutoff-{:g}", nearer, &ChartModel::cutoff, {2.6, 2.4, 2.2});
+  vary(all, "contact_viscosity", "viscosity-{:g}", "no contact viscosity", &ChartModel::contact_viscosity, {0.0});
+  vary(all, "contact_viscosity", "viscosity-{:g}", "contact viscosity {:g} eV ps/nm²",
+       &ChartModel::contact_viscosity, {5.0, 80.0});
+  all.push_back(
+      varied("precision", "double", "double precision", [](ChartModel& m) { m.precision = Precision::full; }));
 }
 
 // Combines the changes that pay alone.
 void add_combinations(const ChartScene& scene, std::vector<ChartModel>& all) {
   const auto combined = [&](std::string name, double length, int nodes, double part_of_cutoff, double mass,
                             int relaxed) {
-    all.push_back(varied("combination", name, [&](ChartModel& m) {
+    std::vector<std::string> words;
+    if (length != 1) words.push_back(fmt::format(fmt::runtime(longer), length));
+    if (nodes > 0) words.push_back(fmt::format("{} nodes", nodes));
+    if (part_of_cutoff > 0) words.push_back(fmt::format(fmt::runtime(nearer), part_of_cutoff));
+    if (mass != 1) words.push_back(fmt::format(fmt::runtime(heavier), mass));
+    if (relaxed > 0) words.emplace_back(relaxed > 1 ? relaxed_at_once : relaxed_stepwise);
+    all.push_back(varied("combination", name, fmt::format("{}", fmt::join(words, ", ")), [&](ChartModel& m) {
       m.length = length;
       m.nodes = nodes;
       m.cutoff = part_of_cutoff;

@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "chart/chart.hpp"
+#include "chart/kinds.hpp"
+#include "chart/overview.hpp"
 #include "report/scatter.hpp"
 
 namespace ropewalk::validate {
@@ -33,14 +35,6 @@ constexpr Peer peers[] = {
      "LAMMPS mesocnt, one rank, 91 x 50 elements: 55 steps per second, plotted for steps of 20 fs. It has no "
      "torsion and cannot run this scene"},
 };
-
-std::string observable_title(const std::string& o) {
-  static const std::map<std::string, std::string> titles = {
-      {"energy", "energy"},         {"beta", "twist angle beta"},         {"spacing", "spacing"},
-      {"end_moment", "end moment"}, {"bending_moment", "bending moment"}, {"Q", "packing charge Q"},
-      {"end_angle", "end angle"}};
-  return titles.at(o);
-}
 
 std::vector<const ChartRow*> rows_of(const std::vector<ChartRow>& rows, const std::string& scene,
                                      const std::string& observable, const std::string& kind) {
@@ -69,44 +63,6 @@ Series series_of(const std::vector<const ChartRow*>& rows) {
 double drawn(double error) { return 100 * std::clamp(error, smallest_error, largest_error); }
 bool beyond(double error) { return error < smallest_error || error > largest_error; }
 
-// Every figure draws a setting with the same colour and mark.
-struct KindStyle {
-  const char *kind, *words;
-  int colour;
-  Mark mark;
-};
-constexpr KindStyle kind_styles[] = {
-    {"default", "default", 5, Mark::star},
-    {"published", "published model", 1, Mark::star},
-    {"finest", "finest model", 5, Mark::cross},
-    {"combination", "several at once", 2, Mark::star},
-    {"element_length", "element length", 0, Mark::dot},
-    {"nodes_per_element", "nodes per element", 1, Mark::dot},
-    {"cutoff", "cutoff", 2, Mark::dot},
-    {"time_step", "time step", 3, Mark::dot},
-    {"mass_scale", "masses", 4, Mark::dot},
-    {"mode", "relaxation", 5, Mark::diamond},
-    {"law", "contact law", 0, Mark::square},
-    {"precision", "precision", 1, Mark::square},
-    {"integrator", "integrator", 2, Mark::square},
-    {"contact_viscosity", "contact viscosity", 4, Mark::triangle},
-    {"bond_damping", "damping of bonds", 0, Mark::triangle},
-    {"bond", "Hooke's bonds", 3, Mark::diamond},
-};
-void check_style(const std::string& kind) {
-  for (const KindStyle& s : kind_styles)
-    if (kind == s.kind) return;
-  throw std::logic_error("no mark for models of kind " + kind);
-}
-
-std::string legend() {
-  std::string html = "<p class=\"legend\">";
-  for (const KindStyle& s : kind_styles)
-    html += fmt::format("<span>{} {}</span> ", mark_svg(s.mark, s.colour), escape_markup(s.words));
-  return html + fmt::format("<span>{} hollow: error below {:g} or above {:g} %</span></p>\n",
-                            mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
-}
-
 ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
   ChartLine line;
   line.colour = 5;
@@ -120,7 +76,7 @@ ChartLine front_line(const Series& s, const std::vector<std::size_t>& front) {
 
 // The text that a reader sees who points at a model.
 std::string title_of(const ChartRow& r) {
-  return fmt::format("{}: {} % off, {} s per ns, {} elements, steps of {} fs", r.point->model,
+  return fmt::format("{}: {} % off, {} s per ns, {} elements, steps of {} fs", model_words(r.point->model),
                      number_text(100 * r.error, 3), number_text(r.point->cpu_per_ns(), 3), r.point->elements,
                      r.point->mode == "relax" ? "-" : number_text(r.point->time_step / units::fs, 3));
 }
@@ -128,7 +84,7 @@ std::string title_of(const ChartRow& r) {
 // Adds the models by kind; those on the front have its numbers, from the cheapest.
 void add_kinds(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front,
                ScatterChart& scatter) {
-  for (const ChartRow* r : rows) check_style(r->point->kind);
+  for (const ChartRow* r : rows) style_of(r->point->kind);  // every kind has one
   for (const KindStyle& kind : kind_styles) {
     ChartLine line;
     line.colour = kind.colour;
@@ -191,8 +147,8 @@ void add_peers(const std::vector<const ChartRow*>& rows, ScatterChart& scatter) 
 std::string front_names(const std::vector<const ChartRow*>& rows, const std::vector<std::size_t>& front) {
   std::string names;
   for (std::size_t k = 0; k < front.size(); ++k)
-    names += fmt::format("{}{} {} ({} %)", names.empty() ? "" : ", ", k + 1, rows[front[k]]->point->model,
-                         number_text(100 * rows[front[k]]->error, 2));
+    names += fmt::format("{}{} {} ({} %)", names.empty() ? "" : "; ", k + 1,
+                         model_words(rows[front[k]]->point->model), number_text(100 * rows[front[k]]->error, 2));
   return names;
 }
 
@@ -239,7 +195,8 @@ std::string points_table(const ChartScene& scene, const std::vector<ChartPoint>&
   std::string html =
       "<details><summary>All models of this scene</summary>\n<div class=\"scroll\"><table "
       "class=\"facts\"><thead><tr>"
-      "<th>Model</th><th>Setting</th><th class=\"number\">Elements</th><th class=\"number\">Step, fs</th>"
+      "<th>Model</th><th>Name in points.csv</th><th class=\"number\">Elements</th><th class=\"number\">Step, "
+      "fs</th>"
       "<th class=\"number\">s per ns</th><th class=\"number\">ns per element-step</th>"
       "<th class=\"number\">10<sup>9</sup> instructions per ns</th>";
   std::vector<std::pair<std::string, std::string>> columns;
@@ -256,7 +213,7 @@ std::string points_table(const ChartScene& scene, const std::vector<ChartPoint>&
   for (const ChartPoint& p : points) {
     if (p.scene != scene.name) continue;
     html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>",
-                        escape_markup(p.model), escape_markup(p.kind), p.elements,
+                        escape_markup(model_words(p.model)), escape_markup(p.model), p.elements,
                         p.mode == "relax" ? "" : number_text(p.time_step / units::fs, 3));
     if (!p.error.empty()) {
       html += fmt::format("<td colspan=\"{}\">could not be run: {}</td></tr>\n", columns.size() + 3,
@@ -325,8 +282,8 @@ std::string published_part(const std::vector<ChartPoint>& points, const std::vec
       text += fmt::format("No model is {:g} times cheaper without a larger error against atoms.  ", much);
     for (std::size_t k = 0; k < std::min<std::size_t>(4, better.size()); ++k)
       text += fmt::format("{}<i>{}</i>: {} times cheaper, at most {} % from the atoms", k > 0 ? "; " : "",
-                          escape_markup(better[k].point->model), number_text(better[k].times_cheaper, 3),
-                          number_text(100 * better[k].worst, 2));
+                          escape_markup(model_words(better[k].point->model)),
+                          number_text(better[k].times_cheaper, 3), number_text(100 * better[k].worst, 2));
     html += paragraph(text + (better.empty() ? "" : "."));
   }
   return html;
@@ -366,7 +323,7 @@ std::string good_enough_part(const std::vector<ChartPoint>& points, const std::v
     html += "<tr><th>" + escape_markup(scene.title) + "</th>";
     for (const double t : tolerances) {
       const ChartPoint* p = cheapest_within(scene, t, points, rows);
-      html += p ? fmt::format("<td>{} ({})</td>", escape_markup(p->model),
+      html += p ? fmt::format("<td>{} ({})</td>", escape_markup(model_words(p->model)),
                               number_text(ours->cpu_per_ns() / p->cpu_per_ns(), 2))
                 : "<td></td>";
     }
@@ -411,26 +368,38 @@ std::string scenes_table(const std::vector<ChartRow>& rows) {
 }
 
 std::string lead() {
-  return "Cost and error of numerical models. Every dot is a model that differs from the default in one setting or "
-         "in a few. Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of "
-         "the ramp and hold that it replaces. Errors are against the finest model (half the element length, all "
-         "nodes, double precision) and, where there are results of atoms, against atoms. Both axes are "
-         "logarithmic. Point at a mark for its numbers; those on the Pareto front are numbered and named below. "
-         "Instructions, where counted, are those of the "
-         "AVX2 kernels by callgrind, which do not depend on the load of the machine. No model is both cheaper and "
-         "more accurate than one on the Pareto front. Each scene and observable has its own front.";
+  return "Which numerical setting saves time, and what it costs in accuracy. Every mark is a model that differs "
+         "from "
+         "the default in one setting, or in a few. Point at it for its numbers.";
+}
+
+std::string reading_part() {
+  return heading("Scene by scene") +
+         paragraph(
+             "Cost is CPU time of one thread per simulated nanosecond; for a relaxation, per nanosecond of the "
+             "ramp "
+             "and hold that it replaces. Errors are against the finest model (half the element length, all nodes, "
+             "double precision) and, where there are results of atoms, against atoms. Both axes are logarithmic. "
+             "No "
+             "model is both cheaper and more accurate than one on the Pareto front, the line; its models are "
+             "numbered and named below each figure. Each scene and observable has its own front. Instructions, "
+             "where "
+             "counted, are those of the AVX2 kernels by callgrind, which do not depend on the load of the "
+             "machine.") +
+         fmt::format("<p class=\"legend\">{}<span>{} hollow: error below {:g} or above {:g} %</span></p>\n",
+                     kinds_legend(""), mark_svg(Mark::dot, 5, true), 100 * smallest_error, 100 * largest_error);
 }
 
 }  // namespace
 
-std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<std::string>& facts) {
-  const std::vector<ChartRow> rows = chart_rows(points);
+std::string chart_page(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows,
+                       const std::vector<std::string>& facts) {
   Figures figures;
   std::string html = page_head("Speed against accuracy") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: which settings pay</p>\n<h1>Speed against "
                      "accuracy</h1>\n<p class=\"lead\">" +
-                     lead() + "</p>\n" + legend() + published_part(points, rows) + good_enough_part(points, rows) +
-                     scenes_table(rows);
+                     lead() + "</p>\n" + overview_part(points, rows, figures) + published_part(points, rows) +
+                     good_enough_part(points, rows) + scenes_table(rows) + reading_part();
   for (const ChartScene& scene : chart_scenes()) {
     std::string part;
     for (const std::string& o : scene.observables)

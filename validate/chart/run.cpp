@@ -1,4 +1,5 @@
-// `ropewalk validate chart`: measures the points, one file each, and writes the chart from them.
+// `ropewalk validate chart`: measures the points, one file each, and writes the chart from them, or draws it again
+// from their table.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -40,13 +41,13 @@ std::string key_of(const ChartPoint& described) {
   return hash_hex(fmt::format("{} {}", git_id, point_json(described)));
 }
 
-void make_directory(const std::string& dir) {
+void make_directory(const fs::path& dir) {
   std::error_code error;
   if (fs::exists(dir, error) && !fs::is_directory(dir, error))
-    throw InputError({dir, 0, "--out"}, "exists and is not a directory", "choose another name");
-  fs::create_directories(fs::path(dir) / "points", error);
+    throw InputError({dir.string(), 0, "--out"}, "exists and is not a directory", "choose another name");
+  fs::create_directories(dir, error);
   if (error)
-    throw InputError({dir, 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
+    throw InputError({dir.string(), 0, "--out"}, fmt::format("cannot be created: {}", error.message()),
                      "choose a directory that you may write to");
 }
 
@@ -57,6 +58,7 @@ std::vector<Task> tasks_of(const ChartArguments& a) {
   if (scenes.empty())
     for (const ChartScene& s : chart_scenes()) scenes.push_back(&s);
   make_directory(a.out);
+  make_directory(fs::path(a.out) / "points");
   refuse_foreign_file(a.out + "/chart.html", page_mark);
   refuse_foreign_file(a.out + "/points.csv", "scene,model,");
   std::vector<Task> tasks;
@@ -102,13 +104,29 @@ void write_chart(const std::string& dir) {
   const std::vector<ChartPoint> points = points_in(dir);
   const std::vector<std::string> facts = {fmt::format("Ropewalk {} ({}), {}, {}; one thread, process CPU time.",
                                                       version, git_id, compiler, build_type)};
-  write_file_atomically(dir + "/points.csv", points_csv(chart_rows(points)));
-  write_file_atomically(dir + "/chart.html", chart_page(points, facts));
+  const std::vector<ChartRow> rows = chart_rows(points);
+  write_file_atomically(dir + "/points.csv", points_csv(points, rows));
+  write_file_atomically(dir + "/chart.html", chart_page(points, rows, facts));
+}
+
+void draw_again(const ChartArguments& a) {
+  const ChartTable table = read_points_csv(a.from);
+  make_directory(a.out);
+  refuse_foreign_file(a.out + "/chart.html", page_mark);
+  const std::string fact = fmt::format(
+      "Drawn by Ropewalk {} from a table of points that were measured before; one thread, process CPU time.",
+      version);
+  write_file_atomically(a.out + "/chart.html", chart_page(table.points, table.rows, {fact}));
 }
 
 }  // namespace
 
 int chart_command(const ChartArguments& a) {
+  if (!a.from.empty()) {
+    draw_again(a);
+    fmt::print("Chart: {}/chart.html\n", a.out);
+    return 0;
+  }
   std::vector<Task> tasks = tasks_of(a);
   double left = 0, done = 0;
   for (const Task& t : tasks)

@@ -445,6 +445,14 @@ const ChartScene& find_chart_scene(const std::string& name) {
                                 : fmt::format("did you mean \"{}\"?", near));
 }
 
+std::string observable_title(const std::string& observable) {
+  static const std::map<std::string, std::string> titles = {
+      {"energy", "energy"},         {"beta", "twist angle beta"},         {"spacing", "spacing"},
+      {"end_moment", "end moment"}, {"bending_moment", "bending moment"}, {"Q", "packing charge Q"},
+      {"end_angle", "end angle"}};
+  return titles.at(observable);
+}
+
 std::string observable_unit(const std::string& observable) {
   static const std::map<std::string, std::string> units = {{"energy", "eV"},
                                                            {"beta", "deg"},

@@ -40,6 +40,7 @@ struct CaseFigure {
   LineChart chart;
   std::string caption;  // what the figure shows
   bool on_map = false;  // stands with the limits of all methods, at the top of the page
+  std::vector<std::vector<std::string>> labels = {};  // beside the points of each line; may be shorter
 };
 
 // A place where a method fails, for the map of `validate stability`.
@@ -160,7 +161,8 @@ struct Case {
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;
-  // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)".
+  // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas stand between
+  // backquotes, as report/formula.hpp reads them; so they do in notes, captions and remarks.
   std::string title;
   std::string why;         // why it matters in a rope
   std::string setup;       // the specimen and its loads

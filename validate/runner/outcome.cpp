@@ -100,12 +100,13 @@ Json to_json(const CaseFigure& f) {
                      {"colour", l.colour},
                      {"dashed", l.dashed},
                      {"steps", l.steps},
-                     {"points", l.points}});
+                     {"points", l.points},
+                     {"filled", l.filled}});
   for (const ChartBand& b : f.chart.bands)
     bands.push_back({{"from", b.from}, {"to", b.to}, {"label", b.label}, {"dark", b.dark}});
-  return {{"title", f.chart.title}, {"x", to_json(f.chart.x)}, {"y", to_json(f.chart.y)},
-          {"lines", lines},         {"bands", bands},          {"caption", f.caption},
-          {"below", f.chart.below}, {"above", f.chart.above},  {"on_map", f.on_map}};
+  return {{"title", f.chart.title}, {"x", to_json(f.chart.x)}, {"y", to_json(f.chart.y)}, {"lines", lines},
+          {"bands", bands},         {"caption", f.caption},    {"below", f.chart.below},  {"above", f.chart.above},
+          {"on_map", f.on_map},     {"labels", f.labels}};
 }
 
 CaseFigure figure_of(const Json& j) {
@@ -122,6 +123,7 @@ CaseFigure figure_of(const Json& j) {
     line.dashed = l.at("dashed");
     line.steps = l.at("steps");
     line.points = l.at("points");
+    line.filled = l.value("filled", false);  // earlier versions have none
     f.chart.lines.push_back(std::move(line));
   }
   for (const Json& b : j.at("bands"))
@@ -130,6 +132,7 @@ CaseFigure figure_of(const Json& j) {
   f.chart.above = j.value("above", "");
   f.caption = j.at("caption");
   f.on_map = j.value("on_map", false);
+  f.labels = j.value("labels", f.labels);
   return f;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/formula.hpp"
+#include "report/scatter.hpp"
 #include "runner/runner.hpp"
 
 namespace ropewalk::validate {
@@ -76,9 +78,9 @@ std::string summary_row(const Outcome& o) {
   const Case& c = find_case(o.name);
   std::string tight = "<td></td>";
   if (const Check* w = worst_check(o.result))
-    tight = fmt::format("<td>{}: {} of {} allowed</td>", escape_markup(w->name), percent(*w), allowed(*w));
+    tight = fmt::format("<td>{}: {} of {} allowed</td>", with_formulas(w->name), percent(*w), allowed(*w));
   if (!o.error.empty()) tight = "<td>" + escape_markup(o.error) + "</td>";
-  if (!o.not_applicable.empty()) tight = "<td class=\"dim\">" + escape_markup(o.not_applicable) + "</td>";
+  if (!o.not_applicable.empty()) tight = "<td class=\"dim\">" + with_formulas(o.not_applicable) + "</td>";
   const std::string title = escape_markup(o.with_tubes(c.title));
   const std::string name = o.not_applicable.empty() ? fmt::format("<a href=\"#{}\">{}</a>", o.name, title) : title;
   return fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>{}<td class=\"dim\">{}</td></tr>\n", verdict_html(o),
@@ -101,13 +103,13 @@ std::string checks_table(const CaseResult& r) {
         : c.holds() && c.known ? "<span class=\"dim\">✗</span>"
         : c.holds()            ? "<span class=\"good\">✓</span>"
                                : "<span class=\"bad\">✗</span>",
-        escape_markup(c.name), number_text(c.value, 6), number_text(c.reference, 6), escape_markup(c.unit),
-        percent(c), allowed(c), escape_markup(c.note));
+        with_formulas(c.name), number_text(c.value, 6), number_text(c.reference, 6), escape_markup(c.unit),
+        percent(c), allowed(c), with_formulas(c.note));
   return html + "</tbody></table></div>\n";
 }
 
 std::string figure_html(const CaseFigure& f, Figures& figures) {
-  const std::string svg = chart_svg(f.chart);
+  const std::string svg = scatter_svg({f.chart, f.labels});
   if (svg.empty()) return "";
   std::vector<TableColumn> columns;
   // The table has the lines that share the abscissa of the first.
@@ -115,7 +117,7 @@ std::string figure_html(const CaseFigure& f, Figures& figures) {
     if (columns.empty()) columns.push_back({f.chart.x.quantity + " (" + f.chart.x.unit + ")", line.x});
     if (line.x == columns[0].values) columns.push_back({line.name, line.y});
   }
-  return "<figure>" + svg + figures.caption(escape_markup(f.caption)) +
+  return "<figure>" + svg + figures.caption(with_formulas(f.caption)) +
          data_table(columns, "The JSON file of the case has all lines.") + "</figure>\n";
 }
 
@@ -135,12 +137,12 @@ std::string figures_html(const std::vector<CaseFigure>& all, bool on_map, Figure
 std::string case_html(const Outcome& o, Figures& figures) {
   const Case& c = find_case(o.name);
   std::string html = fmt::format("<section class=\"case\" id=\"{}\">\n{}", o.name, heading(o.with_tubes(c.title)));
-  html += paragraph(verdict_html(o) + ". " + escape_markup(c.why));
-  html += paragraph("<b>Set-up.</b> " + escape_markup(o.with_tubes(c.setup)) + " <b>Oracle.</b> " +
-                    escape_markup(o.with_tubes(c.oracle)));
+  html += paragraph(verdict_html(o) + ". " + with_formulas(c.why));
+  html += paragraph("<b>Set-up.</b> " + with_formulas(o.with_tubes(c.setup)) + " <b>Oracle.</b> " +
+                    with_formulas(o.with_tubes(c.oracle)));
   if (!o.error.empty()) html += paragraph("<span class=\"bad\">" + escape_markup(o.error) + "</span>");
   html += checks_table(o.result) + figures_html(o.result.figures, false, figures);
-  for (const std::string& r : o.result.remarks) html += paragraph(escape_markup(r));
+  for (const std::string& r : o.result.remarks) html += paragraph(with_formulas(r));
   std::string sources = "<span class=\"soft\">Run it again: <code>ropewalk validate run " + o.name + "</code>. ";
   for (const std::string& s : o.result.sources) sources += "Reference: " + escape_markup(s) + ". ";
   if (!c.literature.empty()) sources += escape_markup(c.literature);
@@ -185,8 +187,8 @@ std::string limit_row(const Limit& l, const std::string& name) {
       "<tr><td><a href=\"#{}\">{}</a></td><td class=\"number\">{}</td><td "
       "class=\"number\">{}</td><td>{}</td><td>{}</td>"
       "<td><b>{}</b></td><td class=\"dim\">{}</td></tr>\n",
-      name, escape_markup(l.method), number_text(l.found), number_text(l.theory), escape_markup(l.unit),
-      strip(l.found / l.theory), guard_words(l.guard), escape_markup(l.how));
+      name, with_formulas(l.method), number_text(l.found), number_text(l.theory), escape_markup(l.unit),
+      strip(l.found / l.theory), guard_words(l.guard), with_formulas(l.how));
 }
 
 std::string limits_map(const std::vector<Outcome>& outcomes, Figures& figures) {
@@ -247,8 +249,8 @@ std::string validation_page(const std::vector<Outcome>& outcomes, const std::vec
   std::string head = page_head(top.title);
   head.insert(head.find("</style>"), verdict_css);
   std::string html = head + "<body>\n<main>\n<p class=\"kicker\">Ropewalk: " + escape_markup(top.kicker) +
-                     "</p>\n<h1>" + escape_markup(top.title) + "</h1>\n<p class=\"lead\">" + lead(outcomes) + "</p>\n" +
-                     top.html +
+                     "</p>\n<h1>" + escape_markup(top.title) + "</h1>\n<p class=\"lead\">" + lead(outcomes) +
+                     "</p>\n" + top.html +
                      "<div class=\"scroll\"><table class=\"verdicts\"><thead><tr><th>Verdict</th>"
                      "<th>Case</th><th>Tube</th><th>Tightest check</th><th>Against</th></tr></thead><tbody>\n";
   for (const Outcome& o : outcomes) html += summary_row(o);

@@ -43,7 +43,7 @@ CaseResult run(const CaseContext& context) {
       "Deflection of a tube on two supports", {"place along the tube", "nm"}, {"deflection", "nm"},
       "The force acts in the middle; the ends are held across the tube and turn freely.",
       {theory_curve("Timoshenko beam", 0, length, beam), model_points("chain of elements", place, found)});
-  result.remarks = {"Shear adds 12 EI/(kGA L^2) times the deflection of the Euler-Bernoulli beam."};
+  result.remarks = {"Shear adds `12 EI/(kGA L^2)` times the deflection of the Euler-Bernoulli beam."};
   return result;
 }
 
@@ -58,7 +58,7 @@ const RegisteredCase registered([] {
   c.setup =
       "A straight (10,10) tube of 20 bonds. Both ends are held across the tube and turn freely; one of them slides "
       "along it. A force acts across the middle; relaxed to 1e-7 eV/nm.";
-  c.oracle = "w = F L^3/(48 EI) + F L/(4 kGA) in the middle.";
+  c.oracle = "`w = F L^3/(48 EI) + F L/(4 kGA)` in the middle.";
   c.literature = "S. P. Timoshenko, Phil. Mag. 41, 744 (1921), DOI 10.1080/14786442108636264";
   c.run = run;
   c.turns_red = {{wrong_EI(1.1), {"deflection in the middle", "deflection at a quarter"}}};

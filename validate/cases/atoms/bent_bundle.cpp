@@ -414,12 +414,13 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(residual_figure(all));
   result.figures.push_back(vdw_figure(all));
   result.remarks = {
-      "Glued, the bundle is one beam: in atoms its stiffness is 98 % of 7 EI + EA sum x^2. Seven eighths of the "
+      "Glued, the bundle is one beam: in atoms its stiffness is 98 % of `7 EI + EA sum x^2`. Seven eighths of the "
       "energy is stretch of the tubes.",
-      "Free, atoms and elements are both softer than 7 EI, which is a lower limit only for tubes that are all bent "
-      "alike. The couple acts on the middle tube and passes to the six others, whose ends are free, over about 2 "
-      "nm from each clamp. There the middle tube has 2.4 times the mean curvature; in the middle of the bundle it "
-      "has half of the mean and the others 0.6 of it. Elements of a bundle four times as long reach 0.87 of 7 EI.",
+      "Free, atoms and elements are both softer than `7 EI`, which is a lower limit only for tubes that are all "
+      "bent alike. The couple acts on the middle tube and passes to the six others, whose ends are free, over "
+      "about 2 nm from each clamp. There the middle tube has 2.4 times the mean curvature; in the middle of the "
+      "bundle it has half of the mean and the others 0.6 of it. Elements of a bundle four times as long reach 0.87 "
+      "of `7 EI`.",
       "Free, the elements are 4 to 6 % too stiff. The load between the tubes bends them within a few radii, where "
       "tubes shear: without shear in the bonds the difference is 11 to 12 %. The forces of lj/cut, whose well is 5 "
       "% shallower, explain at most 1.5 % (by a contact that is 6.5 % weaker). The rest grows with the angle: at "
@@ -450,7 +451,7 @@ const RegisteredCase registered([] {
       "LAMMPS: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set between "
       "tubes. Energy within 5 %. Where tubes slide, the tolerance adds what atoms may lose by leaving their "
       "registry: half of the corrugation of a pair, measured on frozen pairs, in each of the 12 contacts. For "
-      "comparison: K theta^2/(2 L) with K = 7 EI (seven tubes bent alike) and K = 7 EI + EA sum x^2 (glued).";
+      "comparison: `K theta^2/(2 L)` with `K = 7 EI` (seven tubes bent alike) and `K = 7 EI + EA sum x^2` (glued).";
   c.literature =
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
       "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";

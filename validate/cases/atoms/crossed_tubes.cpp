@@ -249,8 +249,8 @@ const RegisteredCase registered([] {
       "registries; rows of elements of the model in the same place.";
   c.oracle =
       "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones); for shells "
-      "without atoms E = "
-      "E90/sin(angle). Energy within 3 % (registry), torque within 5 %, distance of the minimum within 0.5 %.";
+      "without atoms `E = E90/sin(angle)`. Energy within 3 % (registry), torque within 5 %, distance of the "
+      "minimum within 0.5 %.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
   c.turns_red = {wrong_contact(2)};

@@ -13,7 +13,7 @@ const RegisteredCase registered([] {
   rope.collapsed = {45, 60};
   rope.axial_free = {false};
   rope.remarks = {
-      "Beyond r tau = 0.04 the walls collapse. The bond's torque is constant from there, at the twist at which a "
+      "Beyond `r tau = 0.04` the walls collapse. The bond's torque is constant from there, at the twist at which a "
       "clamped tube of this length collapses; its energy is compared within 10 %."};
   Case c = twisted_rope_case(rope, "Twisted 7-tube rope of {tube}, 8 nm, beyond the collapse");
   c.order = 90;

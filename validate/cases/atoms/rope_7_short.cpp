@@ -9,7 +9,7 @@ const RegisteredCase registered([] {
   rope.name = "rope-7-short";
   rope.length = 8;
   rope.remarks = {
-      "Stretch holds 6 % of the energy or less, so that a wrong EA does not show here.",
+      "Stretch holds 6 % of the energy or less, so that a wrong `EA` does not show here.",
       "A wide tube that is clamped at both ends shears where it bends: at a length of six diameters, bonds "
       "without shear are 5 % too stiff from the smallest angle on.",
       "The vdW energy of atoms of wide tubes is 3 to 5 % deeper: they flatten where they touch, rigid cylinders do "

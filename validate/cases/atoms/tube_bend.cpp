@@ -75,8 +75,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   return t;
 }
 
-// The number of points of a specimen that are compared. The comparison ends at the kink, where the ends of the specimen
-// meet, or where the energy leaps. A remark names the cause of an end before the kink of the set.
+// The number of points of a specimen that are compared. The comparison ends at the kink, where the ends of the
+// specimen meet, or where the energy leaps. A remark names the cause of an end before the kink of the set.
 std::size_t points_of(const std::string& which, const CaseTube& tube, const std::vector<double>& curvature,
                       const std::vector<double>& energy, double length, double band, CaseResult& result) {
   const std::size_t whole = points_before_collapse(curvature, energy),
@@ -159,13 +159,13 @@ const RegisteredCase registered([] {
     return lammps_seconds(set, short_length + long_length, most / step);
   };
   c.title = "One tube bent beyond its kink";
-  c.why = "EI decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
+  c.why = "`EI` decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
   c.setup =
       "Finite tubes of {tube}, 8 and 14 nm between held bands (of thin tubes less), are bent step by step to a "
-      "curvature of 0.06 nm/r^2 and relaxed. The bond was fitted to other lengths.";
+      "curvature of 0.06 nm/r² and relaxed. The bond was fitted to other lengths.";
   c.oracle =
-      "Energies of LAMMPS with the interatomic potential of the set, (E_long - E_short)/(L_long - L_short); for a "
-      "chain of elements U/L = EI k^2/2 + c4 (r k)^4. Within 1 % up to the kink.";
+      "Energies of LAMMPS with the interatomic potential of the set, `(E_long - E_short)/(L_long - L_short)`; for "
+      "a chain of elements `U/L = EI k^2/2 + c4 (r k)^4`. Within 1 % up to the kink.";
   c.literature =
       "S. Iijima, C. Brabec, A. Maiti, J. Bernholc, J. Chem. Phys. 104, 2089 (1996), DOI 10.1063/1.470966";
   c.run = run;

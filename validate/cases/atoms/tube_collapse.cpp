@@ -202,8 +202,8 @@ const RegisteredCase registered([] {
       "Tubes of {tube}, 12, 24, 47 and 94 nm between held bands, are twisted step by step with "
       "a little noise and relaxed until the torque falls.";
   c.oracle =
-      "LAMMPS with the Tersoff potential: the twist at which the torque falls. The set's limit, c (1 + 3 "
-      "(r/L)^(3/4)) and at most that of 12 nm, within 10 % where c was measured, else 20 %.";
+      "LAMMPS with the Tersoff potential: the twist at which the torque falls. The set's limit, `c (1 + 3 "
+      "(r/L)^(3/4))` and at most that of 12 nm, within 10 % where `c` was measured, else 20 %.";
   c.literature =
       "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
       "10.1103/PhysRevLett.76.2511";

@@ -114,12 +114,12 @@ const RegisteredCase registered([] {
     return lammps_seconds(set, cell_length, 2 * std::size(magnitudes));
   };
   c.title = "One tube stretched and compressed";
-  c.why = "Twisting a rope stretches its outer tubes and compresses its inner ones: EA sets that energy.";
+  c.why = "Twisting a rope stretches its outer tubes and compresses its inner ones: `EA` sets that energy.";
   c.setup =
       "Periodic cells of 5 nm of {tube} are strained from -8 to 8 % step by step and relaxed. The "
       "bond was fitted to other cells.";
   c.oracle =
-      "Energies of LAMMPS with the Tersoff potential; for a chain of elements U/L = EA e^2/2 + c3 e^3 + c4 e^4. "
+      "Energies of LAMMPS with the Tersoff potential; for a chain of elements `U/L = EA e^2/2 + c3 e^3 + c4 e^4`. "
       "Within 1 % up to the limit of the set or the collapse of the atoms.";
   c.literature =
       "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "

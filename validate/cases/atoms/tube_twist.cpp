@@ -152,14 +152,13 @@ const RegisteredCase registered([] {
     return lammps_seconds(set, 2 * shortest_cell, static_cast<double>(shears(set.chirality).size()));
   };
   c.title = "One tube twisted until it collapses";
-  c.why = "A rope that turns into a helix trades twist, stored by GJ, for bending.";
+  c.why = "A rope that turns into a helix trades twist, stored by `GJ`, for bending.";
   c.setup =
       "Uniformly twisted periodic cells of {tube}, 9 to 24 nm long, with shears up to 0.045 nm/r, chiral tubes in "
       "either sense, relaxed. The bond was fitted to other cells.";
   c.oracle =
-      "Energies of LAMMPS with the interatomic potential of the set; for a chain of elements U/L = GJ t^2/2 + c4 "
-      "(r t)^4 up to the twist at which an "
-      "endless tube collapses, and its tangent beyond. Within 1 % up to the "
+      "Energies of LAMMPS with the interatomic potential of the set; for a chain of elements `U/L = GJ t^2/2 + c4 "
+      "(r t)^4` up to the twist at which an endless tube collapses, and its tangent beyond. Within 1 % up to the "
       "collapse of an endless tube, and within 3 % up to that of 12 nm.";
   c.literature =
       "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "

@@ -444,7 +444,7 @@ const RegisteredCase registered([] {
   c.oracle =
       "LAMMPS, classical: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set "
       "between tubes. Spacing within 0.5 %, energy within 3 %, their changes with temperature within 30 % and "
-      "three standard errors. The change of energy is also allowed kT/2 for the spin and for the slide of each "
+      "three standard errors. The change of energy is also allowed `kT/2` for the spin and for the slide of each "
       "tube, since registry resists them in atoms only.";
   c.literature =
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "

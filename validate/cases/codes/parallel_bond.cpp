@@ -112,8 +112,8 @@ const RegisteredCase registered([] {
       "A cantilever of 20 bonds of either kind; and one bond whose end is bent and twisted around a closed loop in "
       "4000 steps.";
   c.oracle =
-      "w = F L^3/(3 EI) at small force. Energy after a loop of radius A: zero; for the incremental bond 2 EI/a (pi "
-      "A^2/2)^2.";
+      "`w = F L^3/(3 EI)` at small force. Energy after a loop of radius `A`: zero; for the incremental bond `2 "
+      "EI/a (pi A^2/2)^2`.";
   c.literature =
       "D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004), DOI "
       "10.1016/j.ijrmms.2004.09.011; V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI "

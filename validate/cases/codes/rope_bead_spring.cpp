@@ -98,7 +98,7 @@ void add_twist_checks(const Twisted& elements, const Twisted& beads, double tors
   const double angle = angle_step;
   result.check_relative(
       "elements: torsion energy at 90 degrees", elements.twist, torsion, 5e-3, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
+      "the clamped ends straighten the helix; this changes the energy by less than `1 - cos^2 beta`");
   result.check_relative("elements: work of the grips up to 90 degrees", simpson_sum(elements.moment, angle),
                         elements.energy.back(), 1e-3, "eV", "stored energy; Simpson's rule over six increments");
   result.show_relative("beads: work of the grips up to 90 degrees", simpson_sum(beads.moment, angle),
@@ -197,7 +197,7 @@ CaseResult run(const CaseContext& context) {
       twist_figure("Moment on a grip of the twisted rope", "moment", elements, beads, &Twisted::moment, moment,
                    "A rope of beads resists a twist only by bending and stretching its outer tubes.")};
   result.remarks.push_back(
-      "The beads have the spacing and the mean cohesion of the oracle and the EA and EI of the set. The only "
+      "The beads have the spacing and the mean cohesion of the oracle and the `EA` and `EI` of the set. The only "
       "difference is that a bead has no direction. A tube of beads turns about its own axis at no cost, and the "
       "grips work only against bent and stretched outer tubes. A bead model fitted to the moment would have to "
       "replace torsion by one of these.");
@@ -210,9 +210,9 @@ CaseResult run(const CaseContext& context) {
       "tubes the corrugation by registry is 1 to 3 % of the well and not in step along the tube. The two errors do "
       "not cancel: one lets the rope twist too easily, the other keeps its tubes from sliding.");
   result.remarks.push_back(
-      "Three neighbours cannot all be half an element apart. With a cosine of amplitude c per pair, shifts of a "
-      "third of an element are best and gain 3c/2. Beads side by side, as in a rope cut straight, are the state of "
-      "highest energy; only the stretch of the tubes between two grips keeps them there.");
+      "Three neighbours cannot all be half an element apart. With a cosine of amplitude `c` per pair, shifts of a "
+      "third of an element are best and gain `3c/2`. Beads side by side, as in a rope cut straight, are the state "
+      "of highest energy; only the stretch of the tubes between two grips keeps them there.");
   return result;
 }
 
@@ -227,15 +227,15 @@ const RegisteredCase registered([] {
       "Stock molecular dynamics codes build tubes from beads and springs. A twisted rope stores most of its energy "
       "in torsion, which beads do not have.";
   c.setup =
-      "Seven {tube} tubes of 30 bonds between two grips at a fixed distance. The grips turn against each "
-      "other by 90 degrees in increments of 15; the rope is relaxed after each. Once with elements and the line "
-      "law, once with a bead in the place of each element: the same EA and EI, no torsion, a 12-6 contact of the "
-      "same spacing and cohesion. Also the straight rope, with its centre tube shifted by up to one element, and "
-      "with its tubes shifted by thirds of an element.";
+      "Seven {tube} tubes of 30 bonds between two grips at a fixed distance. The grips turn against each other by "
+      "90 degrees in increments of 15; the rope is relaxed after each. Once with elements and the line law, once "
+      "with a bead in the place of each element: the same `EA` and `EI`, no torsion, a 12-6 contact of the same "
+      "spacing and cohesion. Also the straight rope, with its centre tube shifted by up to one element, and with "
+      "its tubes shifted by thirds of an element.";
   c.oracle =
       "Smooth cylinders: the energy does not depend on the shift, and the cohesion is that of all pairs of tubes "
-      "by the surface integral. Torsion energy GJ phi^2 (1 + 6 cos^2 beta)/(2 L), tan beta = R0 phi/L. The stored "
-      "energy is the integral of M dphi.";
+      "by the surface integral. Torsion energy `GJ phi^2 (1 + 6 cos^2 beta)/(2 L)`, `tan beta = R0 phi/L`. The "
+      "stored energy is the integral of `M dphi`.";
   c.literature =
       "M. J. Buehler, J. Mater. Res. 21, 2855 (2006), DOI 10.1557/jmr.2006.0347; A. E. H. Love, A Treatise on the "
       "Mathematical Theory of Elasticity, 4th ed. (1927)";

@@ -143,7 +143,7 @@ void add_full_checks(const Record& full, double torsion, CaseResult& result) {
                         full.kinetic / full.stored, 0, 1e-4, "1", "the rope has come to rest");
   result.check_relative(
       "full gradient: torsion energy at rest", full.twist, torsion, 5e-3, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
+      "the clamped ends straighten the helix; this changes the energy by less than `1 - cos^2 beta`");
 }
 
 void add_legacy_information(const std::string& name, const Record& legacy, const Record& full, CaseResult& result) {
@@ -236,12 +236,12 @@ const RegisteredCase registered([] {
   c.setup = fmt::format(
       "Seven {{tube}} tubes of {} bonds (41 nm) with the paper law between two grips. The grips turn against each "
       "other by 90 degrees in {:.0f} ps and are held until {:.0f} ps. Damping as in a scene by default (viscosity "
-      "of contacts {:.0f} eV ps/nm^2, of bonds {:.0f}/ps), and a tenth of it; with the full gradient and without "
+      "of contacts {:.0f} eV ps/nm², of bonds {:.0f}/ps), and a tenth of it; with the full gradient and without "
       "the torque.",
       bonds, turning, duration, viscosity, bond_damping);
   c.oracle =
-      "Work = stored + kinetic + dissipated energy. The damped rope comes to rest. Torsion energy GJ phi^2 (1 + 6 "
-      "cos^2 beta)/(2 L), tan beta = R0 phi/L.";
+      "Work = stored + kinetic + dissipated energy. The damped rope comes to rest. Torsion energy `GJ phi^2 (1 + 6 "
+      "cos^2 beta)/(2 L)`, `tan beta = R0 phi/L`.";
   c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "
       "10.1016/j.jmps.2012.10.016; public code: waLBerla, module MESA-PD";

@@ -110,7 +110,7 @@ void add_twist_checks(const Ropes& ropes, const ParameterSet& oracle, CaseResult
   result.check_relative(
       "total energy: torsion of the twisted rope", ours.twist,
       torsion_energy(oracle.bond, spacing, bonds * oracle.element_length, angle), 1e-2, "eV",
-      "the clamped ends straighten the helix; this changes the energy by less than 1 - cos^2(beta)");
+      "the clamped ends straighten the helix; this changes the energy by less than `1 - cos^2 beta`");
   result.show_relative("incremental: energy of the twisted rope", theirs.energy, ours.energy, 1e-2, "eV",
                        "twisted once: the same rope");
   result.show_relative("incremental: moment of the twisted rope", theirs.moment, ours.moment, 1e-2, "eV");
@@ -221,7 +221,7 @@ const RegisteredCase registered([] {
       bonds, step_fraction, angle * units::rad_in_degree, shift, leg, rounds, warm, temperature);
   c.oracle =
       "Energy and moment are functions of the state: both vanish when the grips are back. Torsion energy of the "
-      "twisted rope GJ phi^2 (1 + 6 cos^2 beta)/(2 L), tan beta = R0 phi/L.";
+      "twisted rope `GJ phi^2 (1 + 6 cos^2 beta)/(2 L)`, `tan beta = R0 phi/L`.";
   c.literature =
       "D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004), DOI "
       "10.1016/j.ijrmms.2004.09.011; V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI "

@@ -42,6 +42,11 @@ Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   return b;
 }
 
+void bring_to_rest(Bundle& b) {
+  b.state = at_rest(Simulation(b.topology, b.interaction, {}, b.state, b.time_step), 1e-5, 200000).state();
+  b.state.velocity = b.state.angular_velocity = Vec3Array(b.state.size());
+}
+
 double resisting_moment(const std::vector<int>& elements, const Vec3Array& position, const Vec3Array& force,
                         const Vec3Array& torque) {
   double sum = 0;

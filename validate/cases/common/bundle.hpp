@@ -27,6 +27,8 @@ struct Bundle {
   double time_step = 0;  // ps
 };
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements);
+// Relaxes it, and takes its velocities away.
+void bring_to_rest(Bundle& bundle);
 
 // Moment (eV) about the z axis with which these elements resist being turned.
 double resisting_moment(const std::vector<int>& elements, const Vec3Array& position, const Vec3Array& force,

@@ -204,7 +204,7 @@ std::vector<std::string> remarks_of(const RopeComparison& c) {
       "The bonds are anharmonic: stretched tubes soften in tension and in torsion, as in the periodic cells of the "
       "calibration.",
       "A short clamped tube shears where it bends. The shear stiffness of the bonds is that of a thin tube with "
-      "the calibrated EA and GJ; it was not fitted. Bonds without shear are shown for comparison.",
+      "the calibrated `EA` and `GJ`; it was not fitted. Bonds without shear are shown for comparison.",
       "The vdW energies differ by registry: relaxed atoms move into registry, smooth tubes have none. In both, the "
       "change of the vdW energy is below one percent of the twisting energy."};
   remarks.insert(remarks.end(), c.remarks.begin(), c.remarks.end());
@@ -283,9 +283,8 @@ Case twisted_rope_case(const RopeComparison& comparison, const std::string& titl
   c.setup = fmt::format(
       "Seven {{tube}} tubes in hexagonal packing, about {:.0f} nm between the clamps. Bands of 1 nm at both ends "
       "turn as rigid bodies by plus and minus half of the angle, at a fixed distance{}. The interior is relaxed "
-      "after each "
-      "increment of the angle. The checks lie in the elastic range, in which the torsional stiffness of a single "
-      "tube stays within 1 % (r tau = 0.04).",
+      "after each increment of the angle. The checks lie in the elastic range, in which the torsional stiffness of "
+      "a single tube stays within 1 % (`r tau = 0.04`).",
       comparison.length,
       comparison.axial_free.size() > 1 ? " and, in a second series, free to approach each other" : "");
   c.oracle =

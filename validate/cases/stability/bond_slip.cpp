@@ -66,7 +66,7 @@ const RegisteredCase registered([] {
   c.why =
       "The torque of a bond is a sine of its twist. Beyond 90 degrees the bond would lose a turn without notice.";
   c.setup = "Two elements. One is held; a couple turns the other in small increments until the simulator stops.";
-  c.oracle = "M = GJ/a, the largest torque of the bond.";
+  c.oracle = "`M = GJ/a`, the largest torque of the bond.";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;
   c.turns_red = {wrong_GJ(0.9)};

@@ -97,8 +97,8 @@ const RegisteredCase registered([] {
       "A free straight tube of 41 elements with random velocities of 1e-6 nm/ps. Bisection finds, to a thousandth, "
       "the step at which it blows up within 500 steps.";
   c.oracle =
-      "Velocity Verlet with explicit damping is stable while dt^2 K + 2 dt D stays below 4 for every wave number "
-      "of an endless chain, with K its stiffness and D its damping over the masses. Undamped, dt < 2/w.";
+      "Velocity Verlet with explicit damping is stable while `dt^2 K + 2 dt D` stays below 4 for every wave number "
+      "of an endless chain, with `K` its stiffness and `D` its damping over the masses. Undamped, `dt < 2/w`.";
   c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_stiffnesses(1.2)};

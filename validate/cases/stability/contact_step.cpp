@@ -10,8 +10,7 @@ namespace {
 // Seven short tubes at rest.
 Bundle bundle_at_rest(const ParameterSet& set) {
   Bundle b = line_bundle(set, 7, 8);
-  b.state = at_rest(Simulation(b.topology, b.interaction, {}, b.state, b.time_step), 1e-5, 200000).state();
-  b.state.velocity = b.state.angular_velocity = Vec3Array(b.state.size());
+  bring_to_rest(b);
   return b;
 }
 
@@ -55,8 +54,8 @@ const RegisteredCase registered([] {
       "Seven tubes of eight elements at rest with the line law, undamped, with random velocities of 1e-6 nm/ps. "
       "Bisection finds the step at which they blow up within 500 steps.";
   c.oracle =
-      "2/w, with w^2 the largest eigenvalue of the stiffness of the whole rope over its masses, from differences "
-      "of all forces.";
+      "`2/w`, with `w^2` the largest eigenvalue of the stiffness of the whole rope over its masses, from "
+      "differences of all forces.";
   c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_stiffnesses(1.2)};

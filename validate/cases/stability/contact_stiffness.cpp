@@ -54,42 +54,8 @@ Bundle bundle_at_rest(const Series& s, const ParameterSet& set, double factor) {
   Random random(7);
   for (std::size_t i = 0; i < b.state.size(); ++i)
     b.state.position.add(i, 0.01 * Vector3(random.normal(), random.normal(), random.normal()));
-  b.state = at_rest(Simulation(b.topology, b.interaction, {}, b.state, b.time_step), 1e-5, 200000).state();
-  b.state.velocity = b.state.angular_velocity = Vec3Array(b.state.size());
+  bring_to_rest(b);
   return b;
-}
-
-// Viscosity at the contact is explicit, as all damping, and lowers the step too. Returns the smallest limit over
-// estimate.
-double check_viscosity(const CaseContext& context, CaseResult& result) {
-  const Series s = all_series().front();
-  Bundle oracle = bundle_at_rest(s, context.set(s.set), 1), model = packed(s, context.model(s.set), 1);
-  model.state = oracle.state;
-  double margin = 1e9;
-  std::vector<double> at, limit, expected, estimates;
-  for (const double eta : {20.0, 200.0, 1000.0, 5000.0}) {
-    for (Bundle* b : {&model, &oracle}) b->interaction.damping.contact = {eta, b->spacing, 1.5 * b->spacing};
-    const double theory = largest_damped_step(oracle.topology, oracle.interaction, oracle.state);
-    const double found = largest_step(model.topology, model.interaction, model.state, theory);
-    const double estimate = time_step_limit(oracle.topology, oracle.interaction, oracle.spacing).limit;
-    margin = std::min(margin, theory / estimate);
-    at.push_back(eta);
-    limit.push_back(found / units::fs);
-    expected.push_back(theory / units::fs);
-    estimates.push_back(estimate / units::fs);
-    const std::string name = fmt::format("line law, viscosity {:.0f} eV ps/nm^2", eta);
-    result.check_relative(name, limit.back(), expected.back(), 0.05, "fs", "a scene has 20 by default");
-    result.limits.push_back({"time step, seven tubes, " + name, limit.back(), expected.back(), "fs",
-                             Limit::Guard::refused,
-                             "a time step above the estimate, which includes the viscosity"});
-  }
-  result.figures.push_back(step_figure(
-      "contact viscosity", {"viscosity", "eV ps/nm^2", false, true},
-      "Seven tubes. The estimate is lower: it is that of a tube with six neighbours in an endless rope under load.",
-      {{"dt^2 K + 2 dt D = 4", at, expected, 0},
-       model_points("by bisection", at, limit),
-       {"estimate of `run`", at, estimates, 2, true}}));
-  return margin;
 }
 
 CaseResult run(const CaseContext& context) {
@@ -124,7 +90,6 @@ CaseResult run(const CaseContext& context) {
                   "Seven tubes. Points: by bisection. Lines: by the eigenvalues. Where a line begins to fall, the "
                   "contact becomes stiffer than the chains.",
                   lines));
-  min_margin = std::min(min_margin, check_viscosity(context, result));
   // The estimate of `run` must never lie above the stable step.
   result.check_absolute("estimates of `run` above the limit", min_margin < 1 ? 1 : 0, 0, 0, "", "0: none of these");
   result.show_absolute("smallest limit over estimate", min_margin, 1, 0, "",
@@ -149,7 +114,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Seven tubes of four elements at rest, undamped, with random velocities of 1e-6 nm/ps and a contact 1 to 256 "
       "times as strong. Bisection finds the step at which they blow up within 500 steps.";
-  c.oracle = "2/w, with w^2 the largest eigenvalue of the stiffness of the whole rope over its masses.";
+  c.oracle = "`2/w`, with `w^2` the largest eigenvalue of the stiffness of the whole rope over its masses.";
   c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_contact(2)};

@@ -332,7 +332,7 @@ const RegisteredCase registered([] {
       "another. The intervals with the largest change are halved down to 1e-9; a change that is left there is a "
       "jump.";
   c.oracle =
-      "No jumps. Forces and torques equal differences of the energy. E90 by quadrature of the line density. A "
+      "No jumps. Forces and torques equal differences of the energy. `E90` by quadrature of the line density. A "
       "second implementation of the published law, with its jump at 90 degrees.";
   c.literature =
       "I. Ostanin, R. Ballarini, D. Potyondy, T. Dumitrica, J. Mech. Phys. Solids 61, 762 (2013), DOI "

@@ -71,10 +71,10 @@ void check_bending(const CaseContext& context, CaseResult& result) {
 }
 
 CaseFigure bending_figure(const CaseContext& context) {
-  CaseFigure figure = case_figure(
-      "Error of the bending stiffness", {"curvature times element length", "rad"}, {"error", "%"},
-      "Moment over curvature against EI. Bonds without shear (paper) stiffen, bonds with shear soften. The curve "
-      "is the leading term; the checks use the whole expression.");
+  CaseFigure figure =
+      case_figure("Error of the bending stiffness", {"curvature times element length", "rad"}, {"error", "%"},
+                  "Moment over curvature against `EI`. Bonds without shear (paper) stiffen, bonds with shear "
+                  "soften. The curve is the leading term; the checks use the whole expression.");
   int colour = 0;
   for (const CaseTube& tube : context.tubes()) {
     const ParameterSet &model = tube.model, &oracle = tube.set;
@@ -259,8 +259,8 @@ const RegisteredCase registered([] {
       "bend per element at which moment over curvature is 1 % and 5 % off. An element that slides along a row: "
       "bisection finds the node spacing at which the corrugation passes a threshold.";
   c.oracle =
-      "A bond of a polygon has M = EI/a (sin d + 24 s sin^3(d/4) cos(d/4)), that is 1 + (3 s/8 - 1/6) d^2 times "
-      "the rod's moment to leading order. The corrugation follows from Poisson's summation formula, with the "
+      "A bond of a polygon has `M = EI/a (sin d + 24 s sin^3(d/4) cos(d/4))`, that is `1 + (3 s/8 - 1/6) d^2` "
+      "times the rod's moment to leading order. The corrugation follows from Poisson's summation formula, with the "
       "Fourier transform of the energy of one pair.";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;

@@ -152,8 +152,8 @@ CaseResult run(const CaseContext& context) {
        model_points("until 1e-6 eV/nm", part, steps)});
   result.figure(
       "Bow that is left when the relaxation ends", {"load over that of buckling", ""}, {"bow", "pm", false, true},
-      "A tolerance of the force allows a bow that grows as 1/(1 - P/Pc). The motion does not stall; the criterion "
-      "is met too early.",
+      "A tolerance of the force allows a bow that grows as `1/(1 - P/P_c)`. The motion does not stall; the "
+      "criterion is met too early.",
       {{"tolerance over the softest stiffness", part, allowed, 0}, model_points("at 1e-6 eV/nm", part, left)});
   result.remarks.push_back(
       "Forces vanish on a saddle as they do at rest. This is FIRE to a tolerance of the force alone, for which a "
@@ -175,7 +175,7 @@ const RegisteredCase registered([] {
       "A column of 13 elements, held at its foot and loaded at its tip. Bisection finds the load at which FIRE "
       "leaves the straight line and, 20 % above that load, the smallest initial bow from which it does.";
   c.oracle =
-      "Load: pi^2 EI/(4 L^2) with shear after Engesser. Bow: that whose force along the softest mode, by the "
+      "Load: `pi^2 EI/(4 L^2)` with shear after Engesser. Bow: that whose force along the softest mode, by the "
       "eigenvalue of the chain's stiffness, equals the tolerance.";
   c.literature = "E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006), DOI 10.1103/PhysRevLett.97.170201";
   c.run = run;

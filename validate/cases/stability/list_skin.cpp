@@ -164,7 +164,7 @@ const RegisteredCase registered([] {
       "after which a list that is never rebuilt misses a pair, and the skin at which every step rebuilds the list.";
   c.oracle =
       "The sum over all pairs without a list. A list holds for a path of one skin. Every step rebuilds it if the "
-      "skin is below v dt.";
+      "skin is below `v dt`.";
   c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_contact(2)};

@@ -142,11 +142,10 @@ CaseResult run(const CaseContext& context) {
     theory.x.push_back(stiffness * (1 - std::cos(phi)) / phi);
     theory.y.push_back(degrees);
   }
-  result.figure(
-      "Twist under a sudden couple", {"couple", "nN nm"}, {"largest twist", "degrees"},
-      "A sudden couple twists a bond about twice as far as it does at rest. A bond slips under 2/pi of the largest "
-      "moment that it bears at rest.",
-      {theory, model_points("largest twist of the bond", couple, largest)});
+  result.figure("Twist under a sudden couple", {"couple", "nN nm"}, {"largest twist", "degrees"},
+                "A sudden couple twists a bond about twice as far as it does at rest. A bond slips under `2/pi` of "
+                "the largest moment that it bears at rest.",
+                {theory, model_points("largest twist of the bond", couple, largest)});
   result.remarks.push_back(
       "A number that is not finite ends the run in the step in which it arises, whichever number it is. A run does "
       "not start from a state that has one.");
@@ -166,7 +165,7 @@ const RegisteredCase registered([] {
       "A tube of 11 elements at the default step. One element gets a number that is not finite, a kick or a spin; "
       "bisection finds the size at which the run ends. Also two elements under a sudden couple.";
   c.oracle =
-      "A quarter of the radius and half a radian in a step. For the couple M = 2 GJ/(pi a), from the energy of a "
+      "A quarter of the radius and half a radian in a step. For the couple `M = 2 GJ/(pi a)`, from the energy of a "
       "bond's sine up to 90 degrees.";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;

@@ -97,7 +97,7 @@ const RegisteredCase registered([] {
       "Two single elements at a right angle collide head on, at a step so small that it does not matter. Bisection "
       "finds the speed at which they pass through one another. Then the same at a higher speed and the default "
       "step.";
-  c.oracle = "m v^2/4 = U(0), the energy of the law at full overlap.";
+  c.oracle = "`m v^2/4 = U(0)`, the energy of the law at full overlap.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
   c.turns_red = {wrong_contact(2)};

@@ -78,8 +78,8 @@ const RegisteredCase registered([] {
       "A {tube} tube of 364 elements, coiled to a helix whose turns touch. Its radius is 0.75 to 1.2 "
       "times that of theory; the energy is that of bonds and contact.";
   c.oracle =
-      "U = EI L/(2 R^2) - Gamma (L - 2 pi R), lowest at R = (EI L/(2 pi Gamma))^(1/3), with Gamma the surface "
-      "integral at its minimum.";
+      "`U = EI L/(2 R^2) - Gamma (L - 2 pi R)`, lowest at `R = (EI L/(2 pi Gamma))^(1/3)`, with `Gamma` the "
+      "surface integral at its minimum.";
   c.literature = "A. E. Cohen, L. Mahadevan, PNAS 100, 12141 (2003), DOI 10.1073/pnas.1534600100";
   c.run = run;
   c.turns_red = {wrong_EI(1.1), wrong_contact(2)};

@@ -76,7 +76,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Two straight rows of {tube} elements that cross at 15 to 90 degrees, at the distance of the minimum at a "
       "right angle.";
-  c.oracle = "Surface integral of the Lennard-Jones law over two cylinders: E = E90/sin gamma, M = -dE/dgamma.";
+  c.oracle = "Surface integral of the Lennard-Jones law over two cylinders: `E = E90/sin gamma`, `M = -dE/dgamma`.";
   c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
   c.turns_red = {wrong_contact(2)};

@@ -34,8 +34,8 @@ CaseResult run(const CaseContext& context) {
     if (bonds == 20 || bonds == 60)
       result.check_relative("critical load of " + std::to_string(bonds) + " bonds", load, expected,
                             bonds == 20 ? 1e-2 : 3e-3, "eV/nm",
-                            "the column shortens by P/EA before it buckles; the elements' error "
-                            "falls with the square of their length");
+                            "the column shortens by `P/EA` before it buckles; the elements' error falls with the "
+                            "square of their length");
   }
   result.figure("Euler load against the length of the column", {"length", "nm"}, {"critical load", "eV/nm"},
                 "Load at which the lowest eigenvalue of the chain's stiffness passes zero.",
@@ -58,7 +58,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Straight {tube} tubes of 16 to 60 bonds under an axial load; the ends stay on the axis and turn freely. "
       "The lowest eigenvalue of the tangent stiffness of the loaded chain is followed.";
-  c.oracle = "P = pi^2 EI/L^2.";
+  c.oracle = "`P = pi^2 EI/L^2`.";
   c.literature =
       "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); B. Audoly, Y. "
       "Pomeau, Elasticity and Geometry (Oxford, 2010)";

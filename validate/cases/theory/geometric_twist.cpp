@@ -29,10 +29,10 @@ CaseResult run(const CaseContext& context) {
       contractions.push_back(100 * (1 - seen.stretch));
       if (degrees > 5) continue;
       result.check_relative("contraction, arc length kept" + at, 100 * (1 - seen.stretch), 100 * kept, 2e-2, "%",
-                            "L = sqrt(L0² - (r psi)²); bending lengthens the tubes a little");
+                            "`L = sqrt(L0² - (r psi)²)`; bending lengthens the tubes a little");
       result.check_relative("torque per tube, leading order" + at, seen.torque * units::eV_in_nN_nm,
                             2 * tube.set.bond.bend * rho * rho * std::pow(twist, 3) * units::eV_in_nN_nm, 0.1,
-                            "nN nm", "2 EI rho² phi³: without what wound tubes bind more than parallel ones");
+                            "nN nm", "`2 EI rho² phi³`: without what wound tubes bind more than parallel ones");
     }
     if (k > 0) continue;
     result.figure("Contraction of two tubes wound about each other", {"lean", "°"}, {"contraction", "%"},
@@ -65,9 +65,8 @@ const RegisteredCase registered([] {
       "Two tubes of {tube}, 40 elements each, wound by 5 and 10 degrees between clamps in which they spin freely, "
       "one of which moves freely along the axis.";
   c.oracle =
-      "Concentric helices of chains without torsion, whose length is free; at small angles L = sqrt(L0² - (r "
-      "psi)²) with the "
-      "turn psi of the clamps, and M = 2 EI ρ² phi³ for each tube.";
+      "Concentric helices of chains without torsion, whose length is free; at small angles `L = sqrt(L0² - (r "
+      "psi)²)` with the turn `psi` of the clamps, and `M = 2 EI ρ² phi³` for each tube.";
   c.literature = "A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed. (1927), ch. XIX";
   c.run = run;
   c.turns_red = {{wrong_EI(1.2), {"torque per tube"}}};

@@ -55,7 +55,7 @@ CaseResult run(const CaseContext& context) {
       "A couple of fixed direction on a pinned end has no potential, so that the stiffness matrix is not "
       "symmetric. Greenhill's number stands for the static criterion, an eigenvalue that passes zero.");
   result.remarks.push_back(
-      "GJ sets only the angle at which the moment is reached: this case does not see a wrong GJ.");
+      "`GJ` sets only the angle at which the moment is reached: this case does not see a wrong `GJ`.");
   return result;
 }
 
@@ -70,7 +70,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Straight {tube} tubes of 16 to 40 bonds, uniformly twisted by end couples of fixed direction. The ends "
       "stay on the axis and may tilt (pinned) or not (clamped); all elements spin freely.";
-  c.oracle = "M = 2 pi EI/L pinned; M = 2 x EI/L with tan x = x, that is 8.987 EI/L, clamped.";
+  c.oracle = "`M = 2 pi EI/L` pinned; `M = 2 x EI/L` with `tan x = x`, that is `8.987 EI/L`, clamped.";
   c.literature = "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883)";
   c.run = run;
   c.turns_red = {wrong_EI(1.1)};

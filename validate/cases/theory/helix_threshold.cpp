@@ -278,8 +278,8 @@ const RegisteredCase registered([] {
       "(clamped). Also without contact: tubes that share one shape and, at 120 and 160 bonds, cross-sections that "
       "move as rigid bodies.";
   c.oracle =
-      "M = 2 pi B/L pinned, 8.987 B/L clamped. B = N EI for sliding tubes, B = N EI + EA sum y^2 for glued ones, "
-      "with y the distances of the tubes from the neutral plane.";
+      "`M = 2 pi B/L` pinned, `8.987 B/L` clamped. `B = N EI` for sliding tubes, `B = N EI + EA sum y^2` for glued "
+      "ones, with `y` the distances of the tubes from the neutral plane.";
   c.literature = "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883)";
   c.run = run;
   c.turns_red = {wrong_EI(1.1), wrong_EA(1.1)};

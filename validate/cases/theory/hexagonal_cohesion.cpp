@@ -59,8 +59,8 @@ const RegisteredCase registered([] {
       "Straight {tube} tubes on a hexagonal lattice of the law's spacing. The difference of two lengths has no "
       "ends in it.";
   c.oracle =
-      "E/L = (3 N - sqrt(12 N - 3)) E(R0), with E(R0) the surface integral at its minimum; second neighbours are "
-      "added where the atom-atom law reaches them.";
+      "`E/L = (3 N - sqrt(12 N - 3)) E(R0)`, with `E(R0)` the surface integral at its minimum; second neighbours "
+      "are added where the atom-atom law reaches them.";
   c.literature =
       "H. Harborth, Elem. Math. 29, 14 (1974); L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 "
       "(2000), DOI 10.1103/PhysRevB.62.13104";

@@ -89,7 +89,7 @@ const RegisteredCase registered([] {
   c.setup =
       "A free tube of {tube} of 60 elements with harmonic bonds in a Langevin bath of 300 K, sampled every 2 ps "
       "for 6 ns.";
-  c.oracle = "kT/2 for every quadratic term of the energy; persistence length EI/kT.";
+  c.oracle = "`kT/2` for every quadratic term of the energy; persistence length `EI/kT`.";
   c.literature = "L. D. Landau, E. M. Lifshitz, Statistical Physics, 3rd ed. (1980), sections 44 and 127";
   c.run = run;
   c.turns_red = {{wrong_stiffnesses(1.1), {"persistence length", "torsion", "stretching"}}};

@@ -119,9 +119,8 @@ CaseResult run(const CaseContext& context) {
   result.figure("Forces of links along an overlap", {"place", "nm"}, {"force over the mean", ""},
                 "Both ends bear most. Fewer or softer links share the load evenly.", std::move(curves));
   result.remarks.push_back(
-      "The strength of a joint does not grow with its overlap once that is some lambda long: links in the middle "
-      "bear "
-      "nothing until those at the ends are gone.");
+      "The strength of a joint does not grow with its overlap once that is some `lambda` long: links in the middle "
+      "bear nothing until those at the ends are gone.");
   return result;
 }
 
@@ -138,9 +137,9 @@ const RegisteredCase registered([] {
       "links. The "
       "tubes move along their axis alone, so that nothing bends.";
   c.oracle =
-      "Shear lag: p(x) = F/(2 lambda) cosh(x/lambda)/sinh(l/2 lambda) from the middle, lambda = sqrt(EA/2k'), k' "
-      "the "
-      "stiffness of links per length. Largest over mean: (l/2 lambda) coth(l/2 lambda) at the very end.";
+      "Shear lag: `p(x) = F cosh(x/lambda)/(2 lambda sinh(l/(2 lambda)))` from the middle, `lambda = sqrt(EA/(2 "
+      "k'))`, `k'` the stiffness of links per length. Largest over mean: `l/(2 lambda) coth(l/(2 lambda))` at the "
+      "very end.";
   c.literature = "O. Volkersen, Luftfahrtforschung 15, 41 (1938)";
   c.run = run;
   c.turns_red = {{wrong_EA(1.1), {"l = 4.6 lambda"}}};

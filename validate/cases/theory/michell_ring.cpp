@@ -140,7 +140,7 @@ const RegisteredCase registered([] {
   c.setup =
       "Closed, uniformly twisted rings of 40 to 240 elements of the {tube} tube. The lowest eigenvalue of the "
       "tangent stiffness for 2, 3 and 4 waves around the ring.";
-  c.oracle = "Phi = 2 pi sqrt(m^2 - 1) EI/GJ, first for m = 2.";
+  c.oracle = "`Phi = 2 pi sqrt(m^2 - 1) EI/GJ`, first for `m = 2`.";
   c.literature =
       "J. H. Michell, Messenger of Math. 19, 181 (1890); A. Goriely, J. Elasticity 84, 281 (2006), DOI "
       "10.1007/s10659-006-9055-3";

@@ -77,7 +77,7 @@ CaseResult run(const CaseContext& context) {
     charges.push_back(charge_inside(law, radius, rate, pair.distance));
     counts.push_back(ring.tubes);
     result.check_absolute("charge" + at, charges.back(), ideal_charge(beta), 2e-2, "",
-                          "finite distance of the tubes: (spacing/radius)^2 = 0.016");
+                          "finite distance of the tubes: `(spacing/radius)^2 = 0.016`");
     result.check_relative("energy of a contact" + at, ring.energy, pair.energy, 5e-3, "eV/nm",
                           "contact fitted to 1.4e-3; bent tubes: 0.1 %");
   }
@@ -86,7 +86,7 @@ CaseResult run(const CaseContext& context) {
       "The first five-fold site is expected where the curve passes one half to one, at 14 to 20 degrees.");
   CaseFigure count = case_figure(
       "Tubes that fit around a ring", {"twist angle", "degrees"}, {"tubes", ""},
-      "A ring with a radius of 8 spacings. In the cross-section, twisted tubes are wider by 1/cos beta.");
+      "A ring with a radius of 8 spacings. In the cross-section, twisted tubes are wider by `1/cos beta`.");
   charge.chart.lines = {
       theory_curve("6 (1 - cos^3 beta)", 0, 55, [](double d) { return ideal_charge(d * units::degree); }),
       model_points("rings of tubes in contact", angles, charges)};
@@ -116,8 +116,8 @@ const RegisteredCase registered([] {
       "degrees. The angle between neighbours at which their contact energy is lowest tells how many fit around a "
       "ring.";
   c.oracle =
-      "The metric between helical tubes is ds^2 = d rho^2 + rho^2 cos^2 beta d phi^2; its integrated Gaussian "
-      "curvature is a charge Q = 6 (1 - cos^3 beta). The energy of each contact is the surface integral at its "
+      "The metric between helical tubes is `ds^2 = drho^2 + rho^2 cos^2 beta dphi^2`; its integrated Gaussian "
+      "curvature is a charge `Q = 6 (1 - cos^3 beta)`. The energy of each contact is the surface integral at its "
       "minimum.";
   c.literature = "I. R. Bruss, G. M. Grason, PNAS 109, 10781 (2012), DOI 10.1073/pnas.1205606109";
   c.run = run;

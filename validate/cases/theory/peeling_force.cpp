@@ -103,8 +103,8 @@ const RegisteredCase registered([] {
       "Two adhering {tube} tubes of 50 elements. One end of each is held 1 to 4 nm off its place and is free to "
       "turn and to move along the tube; relaxed to 1e-5 eV/nm.";
   c.oracle =
-      "F (sin a + sin b) = -E(R0), with a and b the slopes at the ends and E(R0) the surface integral at its "
-      "minimum. For beams c^4 = 9 EI w^2/|E|, F = 3 EI w/c^3.";
+      "`F (sin a + sin b) = -E(R0)`, with `a` and `b` the slopes at the ends and `E(R0)` the surface integral at "
+      "its minimum. For beams `c^4 = 9 EI w^2/|E|`, `F = 3 EI w/c^3`.";
   c.literature =
       "K. Kendall, J. Phys. D 8, 1449 (1975), DOI 10.1088/0022-3727/8/13/005; J. R. Rice, J. Appl. Mech. 35, 379 "
       "(1968), DOI 10.1115/1.3601206";

@@ -67,7 +67,7 @@ const RegisteredCase registered([] {
       "A straight {tube} tube of 60 bonds, pulled with up to six times its Euler load and uniformly twisted. The "
       "ends stay "
       "on the axis and tilt freely.";
-  c.oracle = "M = 2 sqrt(EI (T + pi² EI/L²)); of a long rod 2 sqrt(EI T).";
+  c.oracle = "`M = 2 sqrt(EI (T + pi² EI/L²))`; of a long rod `2 sqrt(EI T)`.";
   c.literature =
       "A. G. Greenhill, Proc. Inst. Mech. Eng. 34, 182 (1883); J. M. T. Thompson, A. R. Champneys, Proc. R. Soc. "
       "Lond. A "

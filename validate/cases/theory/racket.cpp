@@ -172,11 +172,10 @@ CaseFigure curvature_figure(const Head& head, const State& chain, double element
     s.push_back(from_tip);
     k.push_back(std::asin(t.cross(u).z()) / element_length);
   }
-  return case_figure(
-      "Curvature along the tube", {"contour from the tip", "nm"}, {"curvature", "1/nm"},
-      "Theory has a jump to sqrt(Gamma/EI) where the arms part; in the chain it spreads over the range of the "
-      "attraction.",
-      {theory, model_points("relaxed chain", s, k)});
+  return case_figure("Curvature along the tube", {"contour from the tip", "nm"}, {"curvature", "1/nm"},
+                     "Theory has a jump to `sqrt(Gamma/EI)` where the arms part; in the chain it spreads over the "
+                     "range of the attraction.",
+                     {theory, model_points("relaxed chain", s, k)});
 }
 
 CaseResult run(const CaseContext& context) {
@@ -206,14 +205,14 @@ CaseResult run(const CaseContext& context) {
                         "nm", "as above; ends of the arms: 1 nm");
   result.check_relative("oracle alone: 2 U/Gamma of a head whose arms have no distance",
                         2 * bending(closed, bend) / adhesion, contour(closed), 1e-3, "nm",
-                        "U goes as 1/contour; at the lowest total energy U = Gamma contour/2");
+                        "`U` goes as 1/contour; at the lowest total energy `U = Gamma contour/2`");
   result.show_relative("contour of the head, free to leave its plane",
                        around(lifted, model.element_length, far) + before, contour(head), 1e-2, "nm",
                        "see the remarks");
   result.figures = {shape_figure(head, flat), curvature_figure(head, flat, model.element_length)};
   result.remarks = {
       "The arms lie at the distance of the energy minimum. The oracle has this gap too, which makes its head 1.3 % "
-      "shorter than 6.056 sqrt(EI/Gamma).",
+      "shorter than `6.056 sqrt(EI/Gamma)`.",
       "Contours are measured from where the arms are two spacings apart, beyond the attraction. The oracle's "
       "contour up to that place is added to both.",
       fmt::format("The plane racket is not a minimum in space: one arm climbs onto the other, the gap closes, and "
@@ -236,9 +235,9 @@ const RegisteredCase registered([] {
       "A {tube} tube of 245 elements. It starts in the shape of a racket of 0.85 times the bending "
       "stiffness and is relaxed to 1e-5 eV/nm, first in its plane, then free.";
   c.oracle =
-      "The elastica EI k' = -F cos(slope), integrated numerically. It starts where the arms part, half a spacing "
-      "off the line of symmetry and with k = sqrt(Gamma/EI), and meets the line of symmetry at right angles. For "
-      "arms without a gap the head is 6.056 sqrt(EI/Gamma) long, and rackets longer than twice that have less "
+      "The elastica `EI k' = -F cos(slope)`, integrated numerically. It starts where the arms part, half a spacing "
+      "off the line of symmetry and with `k = sqrt(Gamma/EI)`, and meets the line of symmetry at right angles. For "
+      "arms without a gap the head is `6.056 sqrt(EI/Gamma)` long, and rackets longer than twice that have less "
       "energy than the straight tube. The energy includes the attraction of the opening arms, the surface integral "
       "along the elastica.";
   c.literature = "A. E. Cohen, L. Mahadevan, PNAS 100, 12141 (2003), DOI 10.1073/pnas.1534600100";

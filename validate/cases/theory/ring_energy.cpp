@@ -41,14 +41,14 @@ CaseResult run(const CaseContext& context) {
   }
   result.figure(
       "Error of the bending energy of a ring", {"elements", "", true}, {"error", "%"},
-      "Bending energy of a circle of fixed circumference in N elements, against EI (2 pi)^2/(2 L). The line is the "
-      "leading term of the bond's energy; s depends on the shear stiffness of a bond of this length.",
+      "Bending energy of a circle of fixed circumference in `N` elements, against `EI (2 pi)^2/(2 L)`. The line is "
+      "the leading term of the bond's energy; `s` depends on the shear stiffness of a bond of this length.",
       {theory_curve("(3 s/16 - 1/12) (2 pi/N)^2", 16, 100, [&](double n) { return 100 * leading(n); }),
        model_points("ring of elements", elements, errors)});
   result.remarks.push_back(
-      "A bond bent by delta between chords has 1 + (3 s/16 - 1/12) delta^2 times the energy of the arc, with s = "
-      "1/(1 + 12 EI/(kGA a^2)); without shear the factor of delta^2 is 5/48. The error falls with the square of "
-      "the element length or faster.");
+      "A bond bent by `delta` between chords has `1 + (3 s/16 - 1/12) delta^2` times the energy of the arc, with "
+      "`s = 1/(1 + 12 EI/(kGA a^2))`; without shear the factor of `delta^2` is 5/48. The error falls with the "
+      "square of the element length or faster.");
   return result;
 }
 
@@ -62,7 +62,7 @@ const RegisteredCase registered([] {
   c.why =
       "Half of the elastic energy of a twisted rope is bending. Its error depends on the curvature per element.";
   c.setup = "A closed circle of the {tube} tube, as long as 50 elements of the set, cut into 16 to 100 elements.";
-  c.oracle = "U = EI (2 pi)^2/(2 L).";
+  c.oracle = "`U = EI (2 pi)^2/(2 L)`.";
   c.literature = "V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301";
   c.run = run;
   c.turns_red = {wrong_EI(1.1)};

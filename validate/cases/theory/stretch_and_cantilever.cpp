@@ -70,11 +70,12 @@ const RegisteredCase registered([] {
   c.law = Case::Law::none;
   c.title = "One tube pulled, bent and twisted by its end";
   c.why =
-      "EA, EI and GJ make up every elastic energy of a rope. The chain must show the stiffnesses that were put in.";
+      "`EA`, `EI` and `GJ` make up every elastic energy of a rope. The chain must show the stiffnesses that were "
+      "put in.";
   c.setup =
       "A straight {tube} tube of 20 bonds with one end fixed. The other end bears a force along the tube, a force "
       "across it, or a couple about it; relaxed to 1e-7 eV/nm.";
-  c.oracle = "u = F L/EA, w = F L^3/(3 EI) + F L/kGA (Timoshenko), phi = M L/GJ.";
+  c.oracle = "`u = F L/EA`, `w = F L^3/(3 EI) + F L/kGA` (Timoshenko), `phi = M L/GJ`.";
   c.literature = "L. D. Landau, E. M. Lifshitz, Theory of Elasticity, 3rd ed. (1986), DOI 10.1016/C2009-0-25521-8";
   c.run = run;
   c.turns_red = {wrong_EA(1.1), wrong_EI(1.1), wrong_GJ(0.9)};

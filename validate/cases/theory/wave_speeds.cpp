@@ -77,7 +77,7 @@ CaseResult run(const CaseContext& context) {
        thinned("axial, chain", a, 1),
        theory_curve("torsion, theory", 0, t.time.back(), 2, [&](double x) { return std::cos(k * torsional * x); }),
        thinned("torsion, chain", t, 3)});
-  result.remarks.push_back("The inertia of an element is m r^2, exact for torsion of a thin tube.");
+  result.remarks.push_back("The inertia of an element is `m r^2`, exact for torsion of a thin tube.");
   return result;
 }
 
@@ -92,7 +92,7 @@ const RegisteredCase registered([] {
   c.setup =
       "A free straight {tube} tube of 61 elements, undamped, with initial velocities of its first axial or "
       "torsional mode.";
-  c.oracle = "c = sqrt(EA/mu) axial, c = sqrt(GJ/(mu r^2)) torsional, with mu the mass per length.";
+  c.oracle = "`c = sqrt(EA/mu)` axial, `c = sqrt(GJ/(mu r^2))` torsional, with `mu` the mass per length.";
   c.literature =
       "K. F. Graff, Wave Motion in Elastic Solids (Dover, 1991); carbon nanotubes: T. Natsuki, T. Hayashi, M. "
       "Endo, J. Appl. Phys. 97, 044307 (2005)";
