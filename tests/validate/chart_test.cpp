@@ -187,9 +187,8 @@ TEST(ChartOverview, TellsCheapFromDear) {
 }
 
 TEST(ChartOverview, ComesFirstAndNamesModelsInWords) {
-  std::vector<ChartPoint> points = {made_in("ring", finest_model, 10, 8),
-                                          made_in("ring", default_model, 10.1, 1),
-                                          made_in("ring", "length-2", 10.15, 0.5)};
+  std::vector<ChartPoint> points = {made_in("ring", finest_model, 10, 8), made_in("ring", default_model, 10.1, 1),
+                                    made_in("ring", "length-2", 10.15, 0.5)};
   points.back().kind = "element_length";
   const std::string page = chart_page(points, chart_rows(points), {});
   const std::size_t first = page.find("<figure>"), end = page.find("<h2>");

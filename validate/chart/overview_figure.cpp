@@ -237,15 +237,13 @@ std::string overview_part(const std::vector<ChartPoint>& points, const std::vect
   const std::vector<ModelPlaces> models = shown(all);
   const std::string svg = figure_svg(models, *ours);
   const std::string caption = fmt::format(
-      "<b>All {0} scenes in one:</b> time over that of the default in the same scene, and the largest error of the "
-      "scene's observables against the finest model. Full marks are medians over the scenes, bars reach from "
-      "quartile to quartile (of times where these are {1:g} times apart or more), pale marks are single scenes, "
-      "hollow where they lie beyond the edge. The dashed lines cross at the default, which is {2} off ({3} to "
-      "{4}). "
-      "Models on the left are cheaper, those below are better. What follows, in medians: time over that of the "
-      "default, and error. “Up to” is the scene where a model is farthest off, “fails” the number of scenes where "
-      "it "
-      "could not be run.",
+      "<b>All {0} scenes in one:</b> time over that of the default in the same scene, and the largest error of "
+      "the scene's observables against the finest model. Full marks are medians over the scenes, bars reach "
+      "from quartile to quartile (of times where these are {1:g} times apart or more), pale marks are single "
+      "scenes, hollow where they lie beyond the edge. The dashed lines cross at the default, which is {2} off "
+      "({3} to {4}). Models on the left are cheaper, those below are better. What follows, in medians: time "
+      "over that of the default, and error. “Up to” is the scene where a model is farthest off, “fails” the "
+      "number of scenes where it could not be run.",
       ours->scenes.size(), wide, percent(ours->error.median), percent(ours->error.lower),
       percent(ours->error.upper));
   return "<p class=\"keys\">" + kinds_legend("finest") + "</p>\n<figure>\n<div class=\"scroll wide\">" + svg +

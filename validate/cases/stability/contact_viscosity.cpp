@@ -19,10 +19,9 @@ constexpr double on_table[] = {5000, 200, 20};
 // As `run` has it, with the damping of a scene.
 Prepared rope_of(const ParameterSet& set) {
   Scene scene = scene_of_text(
-      fmt::format(
-          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = {}\nlength_nm = {}\n[contact]\n"
-          "precision = \"double\"\n[run]\nduration_ps = 1\n",
-          set.path, tubes, elements * set.element_length),
+      fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = {}\nlength_nm = "
+                  "{}\n[contact]\nprecision = \"double\"\n[run]\nduration_ps = 1\n",
+                  set.path, tubes, elements * set.element_length),
       "");
   scene.sets = {set};
   return prepare(scene);
@@ -72,14 +71,14 @@ CaseFigure map_of(const Limits& l) {
       "Where seven tubes stay stable, by time step and contact viscosity", {"time step", "fs"},
       {"contact viscosity", "eV ps/nm^2", false, true},
       fmt::format(
-          "Seven tubes at rest. Shaded: stable, up to the largest step by bisection. The estimate of `run`, which "
-          "refuses steps beyond it, is lower: it is that of an endless rope under load. A scene has by default "
-          "{} eV ps/nm^2 and a step of {} fs. A viscosity of {} allows 1/{} of the step of {}.",
+          "Seven tubes at rest. Shaded: stable, up to the largest step by bisection. The estimate of `run`, "
+          "which refuses steps beyond it, is lower: it is that of an endless rope under load. A scene has by "
+          "default {} eV ps/nm^2 and a step of {} fs. A viscosity of {} allows 1/{} of the step of {}.",
           number_text(l.of_scene, 3), number_text(l.step_of_scene, 3), number_text(l.viscosity.front(), 4),
           number_text(l.found.back() / l.found.front(), 2), number_text(l.viscosity.back(), 2)),
       {model_points("by bisection", l.found, l.viscosity),
        {"dt^2 K + 2 dt D = 4", l.theory, l.viscosity, 0},
-       {"estimate of `run`", l.estimate, l.viscosity, 2},
+       {"estimate of a run", l.estimate, l.viscosity, 2},
        {"0.9 of it, the default step", l.chosen, l.viscosity, 5, true},
        stable_area(l),
        model_points("default of a scene", {l.step_of_scene}, {l.of_scene}, 3)});
@@ -112,9 +111,8 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(map_of(l));
   result.remarks.push_back(
       fmt::format("Viscosity at the contact is explicit, as all damping, and lowers the step. The estimate leaves "
-                  "a margin of {:.2g} "
-                  "to {:.2g} here: it is that of a tube with six neighbours under load, and the outer tubes of "
-                  "this rope have three.",
+                  "a margin of {:.2g} to {:.2g} here: it is that of a tube with six neighbours under load, and "
+                  "the outer tubes of this rope have three.",
                   least, most));
   return result;
 }
@@ -126,18 +124,15 @@ const RegisteredCase registered([] {
   c.order = 30;
   c.title = "Stable steps by contact viscosity";
   c.why =
-      "Viscosity brings ropes to rest sooner, and costs steps. A run must know how small they have to be before it "
-      "begins.";
+      "Viscosity brings ropes to rest sooner, and costs steps. A run must know how small they have to be "
+      "before it begins.";
   c.setup =
-      "Seven tubes of four elements at rest with the line law and the bond damping of a scene, random velocities "
-      "of 1e-6 nm/ps and a contact "
-      "viscosity of 0.2 to 5000 eV ps/nm^2; a scene has 27 eV ps/nm^3 times the length of its elements. Bisection "
-      "finds "
-      "the step at which they blow up within 500 steps.";
+      "Seven tubes of four elements at rest with the line law and the bond damping of a scene, random "
+      "velocities of 1e-6 nm/ps and a contact viscosity of 0.2 to 5000 eV ps/nm^2. Bisection finds the step at "
+      "which they blow up within 500 steps.";
   c.oracle =
       "The step at which the largest eigenvalue of dt^2 K + 2 dt D is 4, with stiffness K and damping D of the "
-      "whole "
-      "rope over its masses, from differences of all forces.";
+      "whole rope over its masses, from differences of all forces.";
   c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_stiffnesses(1.2)};
