@@ -35,3 +35,5 @@ curves=twist_eV+bend_eV+vdw_eV,Q
   -o fig4.svg --force
 "$program" picture runs/helices/points/tubes-19_length_nm-271.2_moment_nN_nm-52_hold_ps-400 --at 300,400,500,660 --highest 110 \
   -o helices.svg --force
+# The film of the paper's video: needs ffmpeg.
+if command -v ffmpeg >/dev/null; then "$program" view runs/video/points/* --movie video.webm --force; fi

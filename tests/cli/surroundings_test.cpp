@@ -233,6 +233,8 @@ TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
                                    std::pair{"tubes.csv", "parametrize 5,5 --quiet --out v"},
                                    std::pair{"cnt-5-5-tersoff.html", "parametrize 5,5 --quiet --out v"},
                                    std::pair{"chart.html", "validate chart --quick --quiet --out v"},
+                                   std::pair{"chart.html", "validate chart --from " ROPEWALK_SOURCE_DIR
+                                                           "/data/chart/points.csv --out v"},
                                    std::pair{"points.csv", "validate chart --quick --quiet --out v"}}) {
     spit(dir / "v" / name, "mine");
     const Outcome o = soon(verb);

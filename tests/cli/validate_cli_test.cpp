@@ -54,7 +54,10 @@ TEST_F(Validate, WrongInputGetsOneLine) {
         std::pair{"validate chart --scenes no-such-scene", "there is no scene"},
         std::pair{"validate chart --scenes tube-twist,rope7-m", "did you mean \"rope7-md\"?"},
         std::pair{"validate chart --quick --out file", "not a directory"},
-        std::pair{"validate chart --scene", "--scene"},
+        std::pair{"validate chart --from file", "is not a table of points of this chart"},
+         std::pair{"validate chart --from nowhere.csv", "nowhere.csv"},
+         std::pair{"validate chart --from file --scenes ring", "--scenes"},
+         std::pair{"validate chart --scene", "--scene"},
         std::pair{"validate chart --scenes", "--scenes"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
