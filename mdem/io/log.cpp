@@ -81,14 +81,18 @@ std::string damping_words(const LogRow& row) {
                      100 * damping / lost, lost);
 }
 
-std::string strength_words(const std::vector<LogRow>& log) {
-  if (log.empty()) return "";
-  const double links = log.back()["links_broken"], bonds = log.back()["bonds_broken"];
-  if (!(links + bonds > 0)) return "";
+const LogRow* strongest_row(const std::vector<LogRow>& log) {
   const LogRow* most = nullptr;
   for (const LogRow& row : log)
     if (row["stress_GPa"] > (most ? (*most)["stress_GPa"] : 0)) most = &row;
+  return most;
+}
+
+std::string strength_words(const std::vector<LogRow>& log) {
+  const LogRow* most = strongest_row(log);
   if (!most) return "";
+  const double links = log.back()["links_broken"], bonds = log.back()["bonds_broken"];
+  if (!(links + bonds > 0)) return "";
   return fmt::format(
       "Largest stress {:.3g} GPa ({:.3g} N/tex), at a strain of {:.3g}; {:.0f} of {:.0f} links and {:.0f} bonds of "
       "tubes have broken.",

@@ -39,8 +39,10 @@ double potential_energy(const LogRow& row);
 // less is lost, or less than a tenth of it to damping.
 std::string damping_words(const LogRow& row);
 
-// The largest stress, with its strain, of a rope of which links or tubes have broken. Empty: nothing has, or no end
-// pulls.
+// The row with the largest stress; null where no end pulls.
+const LogRow* strongest_row(const std::vector<LogRow>& log);
+// That stress and its strain in words, for a rope whose links or tubes have broken. Empty: none has broken, or no
+// end pulls.
 std::string strength_words(const std::vector<LogRow>& log);
 
 std::string log_header();

@@ -79,7 +79,8 @@ RunResult Run::finish() {
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
   if (r.missing.empty()) {
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
-    r.strength = strength_words(read_log(r.directory.log()));
+    if (parts_.last_row["links_broken"] + parts_.last_row["bonds_broken"] > 0)
+      r.strength = strength_words(read_log(r.directory.log()));
   } else {
     r.end = RunEnd::incomplete;
   }

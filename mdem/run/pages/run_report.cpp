@@ -66,10 +66,8 @@ void add_strength(const Scene& scene, ReportInput& in) {
   const bool breaks = std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& drive) {
     return drive->table().name == "links" || drive->table().name == "failure";
   });
-  const LogRow* strongest = nullptr;
-  for (const LogRow& row : in.log)
-    if (!strongest || row["stress_GPa"] > (*strongest)["stress_GPa"]) strongest = &row;
-  if (!breaks || !strongest || !std::isfinite((*strongest)["stress_GPa"])) return;
+  const LogRow* strongest = strongest_row(in.log);
+  if (!breaks || !strongest) return;
   const LogRow &most = *strongest, &last = in.log.back();
   in.facts.push_back({"strength",
                       fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", most["stress_GPa"],
