@@ -36,7 +36,7 @@ std::string with_powers(std::string text) {
 // Decimals that show two digits of the error.
 int decimals_of_error(double error) { return std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))); }
 
-// As many digits as the error allows, and seven where there is none.
+// The value with as many digits as its error allows, or with seven digits where it has no error.
 std::string value_text(const Quantity& q) {
   if (std::isnan(q.value)) return "–";
   const double error = q.standard_error.value_or(0);

@@ -271,8 +271,8 @@ struct Painter {
   }
 };
 
-// Links that can be seen, by layer: from wall to wall and a little beyond. A link to an image of its tube in a
-// slice, one period away, and one along the line of sight are left out.
+// The links that can be seen, by layer. Each is drawn from wall to wall and a little beyond. Two kinds of links are
+// left out: those along the line of sight, and those that join, in a slice, an element to an image one period away.
 std::map<int, std::string> link_paths(const RopeView& view, const Painter& painter, const DepthBuffer& buffer) {
   constexpr double inside = 0.2;  // of the way from axis to axis, at either end, that is not drawn
   const double r = painter.radius, longest = 4 * r + 1;

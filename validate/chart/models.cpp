@@ -48,7 +48,7 @@ void add_anchors(std::vector<ChartModel>& all) {
   }));
 }
 
-// One model for each value of a setting; `name` and `words` hold it.
+// One model for each value of a setting. `name` and `words` are formats that take the value.
 template <class T>
 void vary(std::vector<ChartModel>& all, const char* kind, const char* name, const char* words,
           T ChartModel::*setting, std::initializer_list<T> values) {

@@ -36,7 +36,7 @@ struct ModelPlaces {
 };
 
 // Every model but the finest, over the scenes that it and the default went through, in the order of the points.
-// Rows against atoms do not count: few scenes have them. A model that could be run nowhere is left out.
+// Errors against atoms do not count: few scenes have atoms. A model that ran in no scene is left out.
 std::vector<ModelPlaces> places_over_scenes(const std::vector<ChartPoint>& points,
                                             const std::vector<ChartRow>& rows);
 
@@ -55,7 +55,7 @@ Worth worth_of(const ModelPlaces& model);
 std::string overview_part(const std::vector<ChartPoint>& points, const std::vector<ChartRow>& rows,
                           Figures& figures);
 
-// The words for the model of this name; its name where no scene has it.
+// The words of the model with this name. A model that no scene has keeps its name.
 std::string model_words(const std::string& name);
 
 }  // namespace ropewalk::validate

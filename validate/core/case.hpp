@@ -162,7 +162,7 @@ struct Case {
   // the same interatomic potential. The text says why.
   std::string only_these;
   // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas stand between
-  // backquotes, as report/formula.hpp reads them; so they do in notes, captions and remarks.
+  // backquotes in these texts, in notes, in captions and in remarks. report/formula.hpp has their grammar.
   std::string title;
   std::string why;         // why it matters in a rope
   std::string setup;       // the specimen and its loads
