@@ -60,7 +60,7 @@ double expected_shock(const Scene& scene, const Prepared& p) {
     const TubeType& type = p.topology.type_of(t);
     const double rho2 =
         Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
-    const double length = p.topology.length_of(t) * type.element_length, winds = length * rate / type.bond.bend;
+    const double length = p.topology.length_of(t) * type.element_length, winds = length * rate / type.bond.twist;
     kinetic += 4 * type.mass / type.element_length * rho2 * length * winds * winds / 24;
   }
   return kinetic / twist;

@@ -18,11 +18,10 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepar
 // the theory is not for this scene.
 std::optional<std::string> helix_ahead(const Scene& scene, const Prepared& prepared);
 
-// An upper estimate of limits.shock. If a rope under [twist] wound by ML/EI as its moment M rises, its tubes at the
-// distance rho from the axis would move with rho (L/EI)(dM/dt)(s/L - 1/2): kinetic energy m rho^2 L (L/EI
-// dM/dt)^2/24. It lags, and then winds up to twice as fast, so that four times that is taken: runs of 7, 19 and 91
-// tubes of 61 to 190 nm reached 0.6 to 1.4 of it, and 1.1 where it says 1.8. A moment that acts at once counts
-// as 1. 0: not estimated.
+// An upper estimate of limits.shock. Twist runs along a rope under [twist] as a wave: where its moment M rises
+// slowly it winds by ML/GJ, and its tubes at the distance rho from the axis move with rho (L/GJ)(dM/dt)(s/L - 1/2):
+// kinetic energy m rho^2 L (L/GJ dM/dt)^2/24. The wave lags, and then winds up to twice as fast, so that four times
+// that is taken. A moment that acts at once counts as 1. 0: not estimated. Case limit-shock holds runs to it.
 double expected_shock(const Scene& scene, const Prepared& prepared);
 
 // How far a prescribed turn is from rest. Twist travels along a rope as a wave of the speed (K/J)^1/2, with the
