@@ -148,10 +148,13 @@ void add_compare(CLI::App& app, Verbs& v) {
       ->required();
   c->add_option("--page", v.compare.page,
                 "Page with all curves (HTML) [default: compare.html for runs, none for sets]");
-  c->add_option("--x", v.compare.x, "Runs: column of log.csv on the horizontal axis")->capture_default_str();
+  c->add_option("--x", v.compare.x,
+                "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg]");
   c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
+  c->add_flag("--tensile", v.compare.tensile,
+              "Runs that pull a rope: strength, modulus, toughness and breaks, over what --x was before the pull");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
   c->add_option("--csv", v.compare.csv, "Runs: write the curves, and their standard errors, to this file instead");

@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 
 #include "model/error.hpp"
+#include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
 
 namespace ropewalk {
@@ -13,12 +15,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The keys that tell the lines of a figure apart: those that vary, but the first and the seed, by their place among
+// the values of replicates.
+std::vector<std::pair<std::size_t, std::string>> line_keys(const Sweep& sweep) {
+  std::vector<std::pair<std::size_t, std::string>> out;
+  std::size_t place = 0;
+  bool first = true;
+  for (const std::string& key : sweep.keys()) {
+    if (key == "start.seed") continue;
+    if (sweep.varies(key)) {
+      if (!first) out.emplace_back(place, leaf_of(key));
+      first = false;
+    }
+    ++place;
+  }
+  return out;
+}
+
 // The runs of a campaign; those that differ in their seed alone are one group.
 std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   const Sweep sweep = read_campaign(dir);
+  const auto keys = line_keys(sweep);
   std::vector<RunGroup> groups;
   for (const Replicates& r : replicates_of(sweep, points_of(sweep, PointsAs::scenes))) {
-    RunGroup group{r.name, {}};
+    RunGroup group{r.name, {}, {}};
+    for (const auto& [place, key] : keys) group.line += (group.line.empty() ? "" : ", ") + r.values[place];
     for (const SweepPoint& p : r.points)
       if (fs::exists(dir.point(p.name).log())) group.runs.push_back(dir.point(p.name));
     if (!group.runs.empty()) groups.push_back(std::move(group));
@@ -48,7 +69,15 @@ std::vector<RunGroup> groups_in(const std::string& path) {
     throw InputError({path, 0, ""}, "is not the directory of a run", "name runs or campaigns alone, or sets alone");
   const CampaignDirectory campaign{path};
   if (fs::exists(campaign.sweep())) return groups_of(campaign);
-  return {{last_part_of(path), {RunDirectory{path}}}};
+  return {{last_part_of(path), "", {RunDirectory{path}}}};
+}
+
+std::string line_keys_in(const std::string& path) {
+  const CampaignDirectory campaign{path};
+  if (!fs::exists(campaign.sweep())) return "";
+  std::string names;
+  for (const auto& [place, key] : line_keys(read_campaign(campaign))) names += (names.empty() ? "" : ", ") + key;
+  return names;
 }
 
 RunCurve curve_of(const RunGroup& group, bool pictured) {
@@ -71,6 +100,20 @@ RunCurve curve_of(const RunGroup& group, bool pictured) {
   curve.tube_radius = prepared.topology.largest_radius();
   curve.view = last_view(first, scene, prepared);
   return curve;
+}
+
+TensileGroup tensile_of(const RunGroup& group) {
+  TensileGroup out{group.name, group.line, {}};
+  for (const RunDirectory& run : group.runs) {
+    refuse_strange_files(run);
+    try {
+      out.tests.push_back(tensile_test(read_log(run.log()), heights_of_breaks(run.events())));
+    } catch (const std::invalid_argument& e) {
+      throw InputError({run.log(), 0, ""}, e.what(),
+                       "compare runs that pull a rope, see ends_strain and stress_GPa");
+    }
+  }
+  return out;
 }
 
 }  // namespace ropewalk

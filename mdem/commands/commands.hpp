@@ -128,10 +128,11 @@ struct CompareArguments {
   bool json = false;
   bool force = false;
   // For runs.
-  std::string x = "time_ps";
+  std::string x;                    // empty: time_ps; of tensile tests beta_deg
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
+  bool tensile = false;  // strength, toughness and so on of runs that pull a rope
   std::string svg, csv;  // write these files instead of a page
 };
 int compare_command(const CompareArguments& arguments);

@@ -26,12 +26,13 @@ inline bool has_parted(const TubeType& type, const Vector3& bond) {
 
 // The internal and the outermost strands, from the untwisted state.
 struct RopeShells {
-  std::vector<char> internal;   // has six neighbours in the reference state
+  std::vector<char> internal;   // is enclosed by triangles of neighbours that leave no room for a tube
   std::vector<char> outermost;  // not internal
 };
 
 struct CrossSection {
   std::vector<Eigen::Vector2d> points;  // tube positions in the plane normal to the local rope axis, nm
+  std::vector<double> radii;            // of the tubes, nm
   std::vector<int> neighbours;          // by distance
   std::vector<int> delaunay;            // by Delaunay triangulation of `points`
   int charge = 0;                       // Q = sum over internal tubes of 6 - neighbours

@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "report/svg.hpp"
 
@@ -47,8 +48,18 @@ struct Segment {
   std::size_t element;  // where a is
   double moment;
   bool visible;
+  int size = 0;  // of the tube, an index of sizes_of()
 };
 using SeenTube = std::vector<Segment>;
+
+// The radii of the tubes, each once, rising.
+std::vector<double> sizes_of(const RopeView& view, double radius) {
+  if (view.radii.empty()) return {radius};
+  std::vector<double> sizes = view.radii;
+  std::sort(sizes.begin(), sizes.end());
+  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+  return sizes;
+}
 
 Seen see(const RopeCamera& c, const Vector3& p) { return {p.dot(c.right), p.dot(c.up), p.dot(c.towards)}; }
 
@@ -68,14 +79,19 @@ struct Detail {
 constexpr Detail details[] = {{1, 1}, {1, 2}, {1, 3}, {1, 4},  {1, 6},  {2, 4}, {3, 4},
                               {4, 4}, {6, 4}, {9, 4}, {14, 4}, {30, 4}, {80, 4}};
 
-std::vector<SeenTube> seen_tubes(const RopeView& view, const RopeCamera& camera, std::size_t stride) {
+std::vector<SeenTube> seen_tubes(const RopeView& view, const std::vector<double>& sizes, const RopeCamera& camera,
+                                 std::size_t stride) {
   std::vector<SeenTube> tubes;
   for (const std::vector<Vector3>& points : view.tubes) {
     SeenTube tube;
+    int size = 0;
+    if (tubes.size() < view.radii.size())
+      size =
+          static_cast<int>(std::lower_bound(sizes.begin(), sizes.end(), view.radii[tubes.size()]) - sizes.begin());
     for (std::size_t i = 0; i + 1 < points.size(); i += stride) {
       const std::size_t j = std::min(i + stride, points.size() - 1);
       if (!points[i].allFinite() || !points[j].allFinite()) continue;
-      tube.push_back({see(camera, points[i]), see(camera, points[j]), i, 0, false});
+      tube.push_back({see(camera, points[i]), see(camera, points[j]), i, 0, false, size});
     }
     tubes.push_back(std::move(tube));
   }
@@ -95,7 +111,9 @@ void set_moments(std::vector<SeenTube>& tubes, const RopeView& view, std::size_t
 
 class DepthBuffer {
  public:
-  DepthBuffer(const std::vector<SeenTube>& tubes, double radius) : radius_(reach * radius) {
+  DepthBuffer(const std::vector<SeenTube>& tubes, const std::vector<double>& sizes)
+      : sizes_(sizes), radius_(reach * sizes.back()) {
+    for (double& size : sizes_) size *= reach;
     Extent x, y;
     for (const SeenTube& tube : tubes)
       for (const Segment& s : tube)
@@ -103,7 +121,7 @@ class DepthBuffer {
     if (x.empty()) return;
     x0_ = x.low - radius_;
     y0_ = y.low - radius_;
-    cell_ = std::max({radius_ / 4, x.size() / 3000, y.size() / 3000});
+    cell_ = std::max({sizes_.front() / 4, x.size() / 3000, y.size() / 3000});
     columns_ = 1 + static_cast<int>((x.size() + 2 * radius_) / cell_);
     rows_ = 1 + static_cast<int>((y.size() + 2 * radius_) / cell_);
     depth_.assign(static_cast<std::size_t>(columns_) * rows_, -std::numeric_limits<float>::infinity());
@@ -114,7 +132,7 @@ class DepthBuffer {
   }
   bool shows(const Segment& s) {
     int cells = 0;
-    each_cell(s, [&](float& cell, double depth) { cells += depth > cell - 0.2 * radius_; });
+    each_cell(s, [&](float& cell, double depth) { cells += depth > cell - 0.2 * size_of(s); });
     return cells > 1;
   }
 
@@ -138,27 +156,32 @@ class DepthBuffer {
   void each_cell(const Segment& s, const F& f) {
     const double dx = s.b.x - s.a.x, dy = s.b.y - s.a.y, length2 = std::max(1e-12, dx * dx + dy * dy);
     const auto index = [&](double v, double origin) { return static_cast<int>((v - origin) / cell_); };
-    const int c0 = index(std::min(s.a.x, s.b.x) - radius_, x0_), c1 = index(std::max(s.a.x, s.b.x) + radius_, x0_);
-    const int r0 = index(std::min(s.a.y, s.b.y) - radius_, y0_), r1 = index(std::max(s.a.y, s.b.y) + radius_, y0_);
+    const double radius = size_of(s);
+    const int c0 = index(std::min(s.a.x, s.b.x) - radius, x0_), c1 = index(std::max(s.a.x, s.b.x) + radius, x0_);
+    const int r0 = index(std::min(s.a.y, s.b.y) - radius, y0_), r1 = index(std::max(s.a.y, s.b.y) + radius, y0_);
     for (int r = std::max(0, r0); r <= std::min(rows_ - 1, r1); ++r)
       for (int c = std::max(0, c0); c <= std::min(columns_ - 1, c1); ++c) {
         const double px = x0_ + (c + 0.5) * cell_ - s.a.x, py = y0_ + (r + 0.5) * cell_ - s.a.y;
         const double along = std::min(1.0, std::max(0.0, (px * dx + py * dy) / length2));
         const double ox = px - along * dx, oy = py - along * dy;
-        const double inside = radius_ * radius_ - ox * ox - oy * oy;
+        const double inside = radius * radius - ox * ox - oy * oy;
         if (inside > 0)
           f(depth_[static_cast<std::size_t>(r) * columns_ + c],
             s.a.depth + along * (s.b.depth - s.a.depth) + std::sqrt(inside));
       }
   }
 
-  double radius_, x0_ = 0, y0_ = 0, cell_ = 1;
+  double size_of(const Segment& s) const { return sizes_[static_cast<std::size_t>(s.size)]; }
+
+  std::vector<double> sizes_;  // half the strokes behind tubes, nm
+  double radius_;              // the largest
+  double x0_ = 0, y0_ = 0, cell_ = 1;
   int columns_ = 0, rows_ = 0;
   std::vector<float> depth_;
 };
 
-DepthBuffer mark_visible(std::vector<SeenTube>& tubes, double radius) {
-  DepthBuffer buffer(tubes, radius);
+DepthBuffer mark_visible(std::vector<SeenTube>& tubes, const std::vector<double>& sizes) {
+  DepthBuffer buffer(tubes, sizes);
   for (const SeenTube& tube : tubes)
     for (const Segment& s : tube) buffer.add(s);
   for (SeenTube& tube : tubes)
@@ -216,22 +239,23 @@ std::string moves(const std::vector<Spot>& spots, double tolerance) {
 }
 
 struct Key {
-  int layer, colour;
-  bool operator<(const Key& o) const { return layer != o.layer ? layer < o.layer : colour < o.colour; }
+  int layer, size, colour;
+  bool operator<(const Key& o) const { return std::tie(layer, size, colour) < std::tie(o.layer, o.size, o.colour); }
 };
 using Paths = std::map<Key, std::string>;
 
 struct Painter {
   const RopeCamera& camera;
-  double radius;
-  double top;        // nm: upper edge
-  double tolerance;  // hundredths of a nanometre
+  const std::vector<double>& sizes;  // nm
+  double radius;                     // nm, of the thickest tube of all views
+  double top;                        // nm: upper edge
+  double tolerance;                  // hundredths of a nanometre
 
   int layer_of(double depth) const { return static_cast<int>(std::floor(depth / (layer_thickness * radius))); }
   Key key(const Segment& s) const {
     const int layer = layer_of(0.5 * (s.a.depth + s.b.depth));
     const double at = camera.moment_eV > 0 ? s.moment / camera.moment_eV : 0;
-    return {layer, std::min(moment_colours - 1, static_cast<int>(std::min(at, 1.0) * moment_colours))};
+    return {layer, s.size, std::min(moment_colours - 1, static_cast<int>(std::min(at, 1.0) * moment_colours))};
   }
   Spot spot(double x, double y) const {
     return {std::lround((x - camera.left) * per_nm), std::lround((top - y) * per_nm)};
@@ -241,7 +265,7 @@ struct Painter {
   void append(const SeenTube& tube, std::size_t begin, std::size_t end, Paths& paths) const {
     const auto beyond = [&](const Seen& p, const Seen& from) {
       const double length = std::hypot(p.x - from.x, p.y - from.y);
-      const double k = length > 0 ? overlap * radius / length : 0;
+      const double k = length > 0 ? overlap * sizes[static_cast<std::size_t>(tube[begin].size)] / length : 0;
       return spot(p.x + k * (p.x - from.x), p.y + k * (p.y - from.y));
     };
     std::vector<Spot> spots{beyond(tube[begin].a, tube[begin].b)};
@@ -316,24 +340,25 @@ std::string body_colour(bool coloured, int colour, double depth) {  // depth 0: 
   return coloured ? viridis((colour + 0.5) / moment_colours) : hex(mix({84, 106, 130}, {168, 194, 218}, depth));
 }
 
-// The pieces of one layer: one path for each colour, all in one group.
-std::string define_layer(const Paths& paths, int layer, const std::string& id) {
+using PathRange = std::pair<Paths::const_iterator, Paths::const_iterator>;
+
+// The pieces of one layer and size: one path for each colour, all in one group.
+std::string define_layer(const PathRange& paths, const std::string& id) {
   std::string text = fmt::format("<g id=\"{}\">", id);
-  for (auto p = paths.lower_bound({layer, 0}); p != paths.end() && p->first.layer == layer; ++p)
+  for (auto p = paths.first; p != paths.second; ++p)
     text += fmt::format("<path id=\"{}_{}\" d=\"{}\"/>", id, p->first.colour, p->second);
   return text + "</g>";
 }
 
 // Outline, body and highlight. The outline leaves out the beginning of every piece, where it would show as a seam
 // on the piece behind. The opacity belongs to the group of highlights, so that overlaps of pieces do not show.
-std::string paint_layer(const Paths& paths, int layer, const std::string& id, double radius, bool coloured,
-                        double depth) {
+std::string paint_layer(const PathRange& paths, const std::string& id, double radius, bool coloured, double depth) {
   const auto width = [&](double radii) { return std::lround(radii * radius * per_nm); };
   std::string text = fmt::format(
       "<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\" "
       "stroke-dasharray=\"999999\" stroke-dashoffset=\"-{}\"/><g stroke-width=\"{}\">",
       id, width(2 * reach), width(0.8 * overlap), width(1.85));
-  for (auto p = paths.lower_bound({layer, 0}); p != paths.end() && p->first.layer == layer; ++p)
+  for (auto p = paths.first; p != paths.second; ++p)
     text += fmt::format("<use href=\"#{}_{}\" stroke=\"{}\"/>", id, p->first.colour,
                         body_colour(coloured, p->first.colour, depth));
   return text + fmt::format("</g><use href=\"#{}\" stroke=\"#fff\" stroke-width=\"{}\" opacity=\"{:.2f}\"/>\n", id,
@@ -347,17 +372,20 @@ std::string paint_link(const std::string& path, double radius) {
 
 // Links come after the layer of the nearer one of their tubes.
 std::string paint(const Paths& paths, const std::map<int, std::string>& links, const std::string& name,
-                  double radius, bool coloured) {
+                  const std::vector<double>& sizes, double radius, bool coloured) {
   if (paths.empty()) return "";
   auto link = links.begin();
   const int first = paths.begin()->first.layer, last = paths.rbegin()->first.layer;
   std::string definitions = "<defs>", layers;
-  for (auto p = paths.begin(); p != paths.end(); p = paths.upper_bound({p->first.layer, moment_colours})) {
-    const int layer = p->first.layer;
-    const std::string id = fmt::format("{}{}", name, layer - first);
+  for (auto p = paths.begin(); p != paths.end();) {
+    const auto [layer, size, colour] = p->first;
+    const PathRange range = {p, paths.upper_bound({layer, size, moment_colours})};
+    const std::string id = fmt::format("{}{}{}", name, layer - first, size > 0 ? fmt::format("s{}", size) : "");
     const double depth = last > first ? static_cast<double>(layer - first) / (last - first) : 1;
-    definitions += define_layer(paths, layer, id);
-    layers += paint_layer(paths, layer, id, radius, coloured, depth);
+    definitions += define_layer(range, id);
+    layers += paint_layer(range, id, sizes[static_cast<std::size_t>(size)], coloured, depth);
+    p = range.second;
+    if (p != paths.end() && p->first.layer == layer) continue;
     for (; link != links.end() && link->first <= layer; ++link) layers += paint_link(link->second, radius);
   }
   for (; link != links.end(); ++link) layers += paint_link(link->second, radius);
@@ -379,18 +407,19 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
   const bool coloured = camera.moment_eV > 0 && has_moments(view);
   RopeCamera used = camera;
   if (!coloured) used.moment_eV = 0;
+  const std::vector<double> sizes = sizes_of(view, radius);
   // Draws ever more coarsely until the text is small enough.
   for (const Detail& detail : details) {
     if (detail.stride != stride) {
       stride = detail.stride;
-      tubes = seen_tubes(view, camera, stride);
-      buffer = mark_visible(tubes, radius);
+      tubes = seen_tubes(view, sizes, camera, stride);
+      buffer = mark_visible(tubes, sizes);
     }
     if (coloured) set_moments(tubes, view, detail.stride * detail.block);
-    const Painter painter{used, radius, top, 3.0 + static_cast<double>(stride)};
+    const Painter painter{used, sizes, radius, top, 3.0 + static_cast<double>(stride)};
     Paths paths;
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
-    text = paint(paths, link_paths(view, painter, *buffer), name, radius, coloured);
+    text = paint(paths, link_paths(view, painter, *buffer), name, sizes, radius, coloured);
     if (text.size() < max_bytes - 1000) break;
   }
   return text;
@@ -620,9 +649,9 @@ std::string section_picture(const CrossSection& section, const RopeShells& shell
     const Eigen::Vector2d& p = section.points[t];
     if (!p.allFinite()) continue;
     const std::string name = section_class(section, shells, t);
-    const std::string circle =
-        fmt::format("<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"", name,
-                    0.5 * pixels + scale * p.x(), 0.5 * pixels - scale * p.y(), scale * radius);
+    const std::string circle = fmt::format("<circle class=\"{}\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\"", name,
+                                           0.5 * pixels + scale * p.x(), 0.5 * pixels - scale * p.y(),
+                                           scale * (t < section.radii.size() ? section.radii[t] : radius));
     // The number of neighbours is printed if it is not six.
     text += name == "n6" || name == "outermost" ? circle + "/>"
                                                 : fmt::format("{}><title>tube {}: {} neighbours</title></circle>",

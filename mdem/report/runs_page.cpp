@@ -168,12 +168,12 @@ RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& all) 
   return curve;
 }
 
-std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure) {
-  Figures figures;
+std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure,
+                      Figures figures, const std::string& first) {
   const std::vector<std::string> columns = columns_of(runs, figure);
   std::string html = page_head(title) +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: runs side by side</p>\n<h1>" +
-                     escape_markup(title) + "</h1>\n";
+                     escape_markup(title) + "</h1>\n" + first;
   const bool replicated = std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.replicates > 1; });
   html +=
       paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",

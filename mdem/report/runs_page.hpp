@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/log.hpp"
+#include "report/page.hpp"
 #include "report/svg.hpp"
 
 namespace ropewalk {
@@ -41,8 +42,10 @@ struct RunsFigure {
   bool y_decades = false;
 };
 
+// `first`: a part of the page that stands before all others, with its figures.
 // Throws std::invalid_argument where a column does not exist.
-std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure);
+std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure,
+                      Figures figures = {}, const std::string& first = "");
 // The chart of the first y alone, as a file on white. Empty where there is nothing to draw.
 std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure);
 // x, then y and its error for each run: what the charts show.

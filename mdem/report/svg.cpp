@@ -240,11 +240,36 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
   return d;
 }
 
+// Bars of the line's errors with a tick at each end, and a dot at each of its points.
+std::string error_bars(const ChartLine& line, const Plot& plot) {
+  constexpr double half_tick = 3;
+  const auto y = [&](double v) { return std::clamp(plot.py(v), plot.top, plot.bottom); };
+  std::string bars, dots;
+  for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+    if (!std::isfinite(line.x[i] + line.y[i])) continue;
+    const double at = plot.px(line.x[i]), error = i < line.error.size() ? line.error[i] : 0;
+    dots += fmt::format("M{:.1f} {:.1f}h0", at, plot.py(line.y[i]));
+    if (!(error > 0)) continue;
+    const double top = y(line.y[i] + error), bottom = y(line.y[i] - error);
+    bars += fmt::format("M{0:.1f} {1:.1f}V{2:.1f}", at, top, bottom);
+    for (const double end : {top, bottom})
+      bars += fmt::format("M{:.1f} {:.1f}h{:g}", at - half_tick, end, 2 * half_tick);
+  }
+  std::string text;
+  if (!bars.empty()) text += fmt::format("<path class=\"line c{}\" d=\"{}\"/>\n", colour_of(line), bars);
+  if (!dots.empty()) text += fmt::format("<path class=\"line points c{}\" d=\"{}\"/>\n", colour_of(line), dots);
+  return text;
+}
+
 // Bands of the lines' errors, cut at the edges of the plot. A missing error interrupts a band.
-std::string draw_error_bands(const LineChart& chart, const Plot& plot) {
+std::string draw_errors(const LineChart& chart, const Plot& plot) {
   std::string text;
   const auto y = [&](double v) { return std::clamp(plot.py(v), plot.top, plot.bottom); };
   for (const ChartLine& line : chart.lines) {
+    if (line.bars) {
+      text += error_bars(line, plot);
+      continue;
+    }
     const std::size_t count = std::min({line.x.size(), line.y.size(), line.error.size()});
     const std::size_t every = std::max<std::size_t>(1, count / (max_points / 2));
     std::string upper, lower;
@@ -650,8 +675,8 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
-  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_error_bands(chart, plot) +
-          draw_regions(chart, plot) + draw_areas(chart, plot);
+  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_errors(chart, plot) + draw_regions(chart, plot) +
+          draw_areas(chart, plot);
   for (std::size_t l = 0; l < chart.lines.size(); ++l) {
     const ChartLine& line = chart.lines[l];
     if (line.filled) continue;

@@ -46,6 +46,7 @@ struct ChartLine {
   bool points = false;  // dots, not joined
   // A band about the line, as wide as this to either side; empty: none.
   std::vector<double> error = {};
+  bool bars = false;    // the errors are bars at its points instead
   bool filled = false;  // an area that the line goes round, with its name at the centre
 };
 
@@ -84,6 +85,7 @@ struct RopeView {
   double beta_deg = 0;
   std::vector<std::vector<Vector3>> tubes;                  // nm
   std::vector<std::vector<double>> bending_moment_eV = {};  // per element; none: shaded by depth alone
+  std::vector<double> radii = {};                           // nm, of the tubes; none: all are of the one radius
   std::vector<std::array<Vector3, 2>> links = {};           // nm, on the axes of the two tubes; drawn in red
 };
 

@@ -33,14 +33,37 @@ std::string events_csv(const Topology& topology, const std::vector<TermEvent>& e
   return text;
 }
 
-StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : topology_(topology) {
+namespace {
+
+// The lines of the file, one by one; none where there is no file.
+template <class Line>
+void each_event(const std::string& path, Line line) {
   if (!std::filesystem::exists(path)) return;
   CsvReader csv(path);
   const std::vector<OutputColumn> columns = event_columns();
   if (!csv.next() || csv.line_text() != column_names(columns))
     csv.fail("", "has another header", "bring the file back as `ropewalk run` wrote it");
+  while (csv.next()) {
+    if (csv.cells().size() != columns.size())
+      csv.fail("", "has too few or too many columns", "bring the line back");
+    line(csv, std::string(csv.cells()[1]));
+  }
+}
+
+}  // namespace
+
+std::vector<double> heights_of_breaks(const std::string& path) {
+  std::vector<double> heights;
+  each_event(path, [&](CsvReader& csv, const std::string& what) {
+    if (what == "link broke" || what == "tube broke") heights.push_back(csv.finite_number(8, "z_nm"));
+  });
+  return heights;
+}
+
+StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : topology_(topology) {
   // The number of an element that the cells from `cell` on name.
-  const auto element_at = [&](std::size_t cell, const char* tube_name, const char* element_name, int behind) {
+  const auto element_at = [&](CsvReader& csv, std::size_t cell, const char* tube_name, const char* element_name,
+                              int behind) {
     const double tube = csv.finite_number(cell, tube_name), element = csv.finite_number(cell + 1, element_name);
     if (!(tube >= 0 && tube < topology.tubes()) || tube != std::floor(tube))
       csv.fail(tube_name, "is no tube of the scene", "bring the line back");
@@ -50,25 +73,22 @@ StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : 
                "bring the line back");
     return topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element);
   };
-  while (csv.next()) {
-    if (csv.cells().size() != columns.size())
-      csv.fail("", "has too few or too many columns", "bring the line back");
-    const std::string what(csv.cells()[1]);
+  each_event(path, [&](CsvReader& csv, const std::string& what) {
     const double time = csv.finite_number(0, "time_ps");
     if (what == "tube broke") {
-      breaks_.push_back({time, element_at(2, "tube", "element", 1)});
+      breaks_.push_back({time, element_at(csv, 2, "tube", "element", 1)});
     } else if (what == "link formed" || what == "link broke") {
-      const int a = element_at(2, "tube", "element", 0), b = element_at(4, "to_tube", "to_element", 0);
+      const int a = element_at(csv, 2, "tube", "element", 0), b = element_at(csv, 4, "to_tube", "to_element", 0);
       if (what == "link formed") {
         links_.push_back({a, b, time, std::numeric_limits<double>::infinity()});
-        continue;
+        return;
       }
       const auto held = std::find_if(links_.begin(), links_.end(), [&](const Link& l) {
         return l.a == a && l.b == b && l.formed <= time && std::isinf(l.broke);
       });
       if (held != links_.end()) held->broke = time;
     }
-  }
+  });
 }
 
 std::vector<std::pair<int, int>> StoredEvents::links_at(double time) const {

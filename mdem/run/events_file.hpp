@@ -13,6 +13,9 @@ namespace ropewalk {
 std::vector<OutputColumn> event_columns();
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events);
 
+// nm, of the links and tubes that broke; none where there is no file. Throws InputError where a line is not right.
+std::vector<double> heights_of_breaks(const std::string& path);
+
 // What the file of a run tells of its links and tubes; nothing where there is no file. Throws InputError where it
 // tells of elements that the scene does not have.
 class StoredEvents {

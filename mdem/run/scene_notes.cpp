@@ -68,11 +68,10 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
       std::minmax_element(scene.sets.begin(), scene.sets.end(),
                           [](const ParameterSet& a, const ParameterSet& b) { return a.radius < b.radius; });
   if (most->radius < 1.05 * least->radius) return;
-  warnings.push_back(
-      fmt::format("Tubes of {:.3g} and {:.3g} nm radius: the packing charge Q counts neighbours within one "
-                  "distance of the axes, "
-                  "that of the widest tubes, and means nothing between narrow ones; Q_delaunay needs no distance.",
-                  least->radius, most->radius));
+  warnings.push_back(fmt::format(
+      "Tubes of {:.3g} and {:.3g} nm radius: the packing charge Q and the voids go by the spacing of the widest "
+      "tubes, and mean nothing between narrow ones; Q_delaunay needs no distance.",
+      least->radius, most->radius));
 }
 
 // Observables of the rope as a whole take sections through elements of equal number along their tubes.

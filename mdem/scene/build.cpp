@@ -12,6 +12,7 @@
 #include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/memory.hpp"
+#include "scene/packing.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
 #include "scene/wound.hpp"
@@ -75,6 +76,39 @@ void set_tube_types(const Scene& scene, Topology& topology) {
   for (int t = 0, strand = -1; t < tubes; ++t) {
     strand += topology.begins_strand(t);
     topology.tube_type[static_cast<std::size_t>(t)] = scene.tube_types[static_cast<std::size_t>(strand)];
+  }
+}
+
+// Moves each strand as a whole until strands touch, each as thick as its thickest tube.
+void draw_strands_together(const Scene& scene, const ContactLaw* law, double spacing, const Topology& topology,
+                           State& state) {
+  const auto& types = topology.tube_type;
+  const bool unlike = std::any_of(types.begin(), types.end(), [&](int type) { return type != types.front(); });
+  if (!scene.source->draws_together(unlike)) return;
+  const double typed = spacing / parallel_spacing(scene, law);
+  const std::size_t kinds = scene.sets.size();
+  std::vector<std::vector<double>> apart(kinds, std::vector<double>(kinds));
+  for (std::size_t i = 0; i < kinds; ++i)
+    for (std::size_t j = 0; j < kinds; ++j)
+      apart[i][j] = typed * pair_spacing(scene, law, {static_cast<int>(i), static_cast<int>(j)});
+  std::vector<Disc> discs;
+  std::vector<int> strand_of(static_cast<std::size_t>(topology.tubes()));
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const auto type = static_cast<std::size_t>(types[static_cast<std::size_t>(t)]);
+    if (topology.begins_strand(t)) {
+      const Vector3 at = state.position[static_cast<std::size_t>(topology.tube_begin[t])];
+      discs.push_back({at.x(), at.y(), static_cast<int>(type)});
+    }
+    Disc& disc = discs.back();
+    if (scene.sets[type].radius > scene.sets[static_cast<std::size_t>(disc.type)].radius)
+      disc.type = static_cast<int>(type);
+    strand_of[static_cast<std::size_t>(t)] = static_cast<int>(discs.size()) - 1;
+  }
+  const std::vector<Disc> before = discs;
+  draw_together(discs, apart);
+  for (int e = 0; e < topology.elements(); ++e) {
+    const auto s = static_cast<std::size_t>(strand_of[static_cast<std::size_t>(topology.tube_of(e))]);
+    state.position.add(static_cast<std::size_t>(e), Vector3(discs[s].x - before[s].x, discs[s].y - before[s].y, 0));
   }
 }
 
@@ -181,9 +215,10 @@ BuiltScene build(Scene& scene) {
     throw InputError({scene.path, 0, scene.kind},
                      fmt::format("holds {} elements, {}", out.topology.elements(), memory),
                      "take fewer elements, or another machine");
+  set_tube_types(scene, out.topology);
+  draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
-  set_tube_types(scene, out.topology);
   out.topology.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
   set_collapse(scene, out.topology);
   check_state(scene, out);

@@ -30,6 +30,9 @@ class Source {
   virtual double slides() const { return 0; }
   // Whether all tubes are straight and parallel to z.
   virtual bool is_parallel() const { return false; }
+  // Whether tubes side by side are moved together, across the axis, until they touch. `unlike`: they are of several
+  // types.
+  virtual bool draws_together(bool /*unlike*/) const { return false; }
   // The file that the elements are read from; empty: no file.
   virtual std::string file() const { return ""; }
   // The key that LAMMPS cannot carry; empty: it can.

@@ -44,6 +44,12 @@ double parallel_spacing(const Scene& scene, const ContactLaw* law) {
   return largest_distance(scene, law, &ContactLaw::parallel_distance);
 }
 
+double pair_spacing(const Scene& scene, const ContactLaw* law, TypePair types) {
+  if (law) return law->parallel_distance(types, scene.element_length);
+  return scene.sets[static_cast<std::size_t>(types.i)].radius +
+         scene.sets[static_cast<std::size_t>(types.j)].radius + graphite_gap;
+}
+
 double coaxial_gap(const Scene& scene) {
   if (const std::vector<EndContact> ends = end_contacts(scene); !ends.empty()) {
     const auto rests_nearer = [](const EndContact& a, const EndContact& b) { return a.rest() < b.rest(); };

@@ -4,6 +4,7 @@
 namespace ropewalk {
 
 class ContactLaw;
+struct TypePair;
 struct Scene;
 
 inline constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
@@ -13,6 +14,8 @@ double largest_radius(const Scene& scene);  // nm, of the tube types
 // The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that
 // of their walls in graphite. Of several tube types, the largest.
 double parallel_spacing(const Scene& scene, const ContactLaw* law);
+// Of tubes of these two types alone.
+double pair_spacing(const Scene& scene, const ContactLaw* law, TypePair types);
 double crossed_spacing(const Scene& scene);
 // The gap (nm) between the ends of two tubes in line at which these do not push each other; the largest of all
 // pairs of types. Of a law without a contact of ends, which knows axes alone, it is four times that of atoms.

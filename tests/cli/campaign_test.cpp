@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cli/support.hpp"
+#include "io/csv_reader.hpp"
 
 namespace ropewalk::test {
 namespace {
@@ -457,6 +458,54 @@ TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
   EXPECT_EQ(run("compare s --y nothing").code, 2);
   EXPECT_EQ(run("compare s --level x").code, 2);
   EXPECT_EQ(run("compare s cnt-10-10-tersoff").code, 2);
+}
+
+// Two lengths of tubes by two angles, two seeds of each, pulled until they part.
+TEST_F(Campaign, TheStrengthOfRopesOfFiniteTubes) {
+  spit(dir / "rope.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
+       "40\ntube_length_nm = 12\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 2\n[start]\ntwist_deg_per_nm = "
+       "0\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = [[0, 0], [5, 0], [45, 0.02]] "
+       "}\n[[links]]\nper_nm = 0.1\nstiffness_nN_per_nm = 100\nbreaks_at_nN = 3\n[run]\nlog_every_ps = 0.5\n");
+  spit(dir / "s.toml",
+       "format = \"ropewalk-sweep-1\"\nscene = \"rope.toml\"\nreplicates = 2\n[vary]\nstart.twist_deg_per_nm = "
+       "[0, 2]\nrope.tube_length_nm = [10, 20]\n");
+  ASSERT_EQ(run("sweep s.toml --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("compare s --tensile --csv t.csv --svg t.svg").code, 0) << slurp(dir / "stderr.txt");
+  CsvReader csv((dir / "t.csv").string());
+  ASSERT_TRUE(csv.next());
+  const std::vector<std::string> names(csv.cells().begin(), csv.cells().end());
+  const auto number = [&](const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    return csv.number(static_cast<std::size_t>(at - names.begin()), name);
+  };
+  std::vector<double> angles;
+  while (csv.next()) {
+    EXPECT_EQ(number("replicates"), 2);
+    EXPECT_GT(number("strength_GPa"), number("strength_GPa_standard_error"));
+    EXPECT_GT(number("links_broken"), 0);
+    EXPECT_GT(number("toughness_MJ_per_m3"), 0);
+    angles.push_back(number("beta_deg"));
+  }
+  ASSERT_EQ(angles.size(), 4u);
+  EXPECT_LT(angles[0], 1);
+  EXPECT_GT(angles[3], 2);
+  const std::string svg = slurp(dir / "t.svg");
+  for (const char* words : {">10<", ">20<", "cos²", "strength (GPa)"})
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  ASSERT_EQ(run("compare s --tensile --page t.html").code, 0) << slurp(dir / "stderr.txt");
+  const std::string page = slurp(dir / "t.html");
+  for (const char* words :
+       {"Strength against", "Lines: tube_length_nm.", "toughness_J_per_g", "stress against strain"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_EQ(run("compare s --tensile --y beta_deg --force").code, 2);
+  spit(dir / "still.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = "
+       "4\n[run]\nduration_ps = 0.1\n");
+  ASSERT_EQ(run("run still.toml --out still --quiet").code, 0);
+  const auto still = run("compare still --tensile --csv still.csv");
+  EXPECT_EQ(still.code, 2);
+  EXPECT_NE(still.err.find("nothing pulls in it"), std::string::npos) << still.err;
 }
 
 // Seven tubes, from both sides; the same command goes on, and a longer hold asks for another directory.

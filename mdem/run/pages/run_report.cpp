@@ -180,6 +180,7 @@ RopeView view_of(const StoredEvents& events, const StoredFrame& frame, double be
     std::vector<Vector3> line;
     for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
     view.tubes.push_back(std::move(line));
+    view.radii.push_back(topology.type_of(t).radius);
     if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
   }
   for (const auto& [a, b] : events.links_at(frame.state.time))

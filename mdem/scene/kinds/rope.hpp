@@ -1,6 +1,11 @@
-// [rope] parallel tubes along z on a hexagonal lattice, centred on the origin. Each place of the cross-section has
-// one tube as long as the rope, or a strand: tubes of given lengths in line, with their ends inside.
+// [rope] parallel tubes along z, on a hexagonal lattice or not, centred on the origin. Each place of the
+// cross-section has one tube as long as the rope, or a strand: tubes of given lengths in line, with their ends
+// inside.
 #pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "scene/kinds/scene_kind.hpp"
 
@@ -8,15 +13,18 @@ namespace ropewalk {
 
 class RopeSource : public Source {
  public:
-  // Places: full shells, or those nearest to the axis whatever their number.
-  enum class Packing { hexagonal, round };
+  // Places: full shells of a lattice, those nearest to its axis whatever their number, or none of a lattice.
+  enum class Packing { hexagonal, round, random };
   // Where tubes of neighbouring strands end: at one height, shifted by a third of a tube, anywhere.
   enum class Stagger { none, brick, random };
 
+  static constexpr int least_elements = 3;  // of a tube
+
   int tubes = 91;  // number of tubes in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   Packing packing = Packing::hexagonal;
-  double length = 0;        // nm, rounded to whole elements
-  double spacing = 0;       // nm; 0: that at which two tubes bind best
+  std::vector<std::pair<double, double>> typed_places = {};  // nm, of the tubes, in place of a packing
+  double length = 0;                                         // nm, rounded to whole elements
+  double spacing = 0;                                        // nm; 0: that at which two tubes bind best
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
   double tube_length = 0;   // nm, the mean; 0: as long as the rope
   double deviation = 0;     // nm, standard deviation of the lengths
@@ -29,11 +37,14 @@ class RopeSource : public Source {
   // Parts of tubes slide as a whole; and helices are longer than the axis, so that long tubes shrink along it.
   double slides() const override { return tube_length > 0 ? 5 + 0.1 * tube_length : 0; }
   bool is_parallel() const override { return true; }
+  bool draws_together(bool unlike) const override {
+    return typed_places.empty() && (unlike || packing == Packing::random);
+  }
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
   std::string not_for_lammps() const override { return tube_length > 0 ? "rope.tube_length_nm" : ""; }
 
-  // Of the strands in a cross-section (nm), about its middle.
-  std::vector<std::pair<double, double>> places(double spacing_of_tubes) const;
+  // Of the strands in a cross-section (nm), about its middle. `seed`: of random ones.
+  std::vector<std::pair<double, double>> places(double spacing_of_tubes, std::uint64_t seed = 1) const;
 
  private:
   void place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;

@@ -13,6 +13,7 @@
 #include "io/tube_table.hpp"
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
+#include "report/tensile.hpp"
 #include "run/events_file.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
@@ -35,6 +36,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`events.csv`"), columns_markdown(event_columns()));
+  EXPECT_EQ(outputs_table("`ropewalk compare --tensile --csv`"), columns_markdown(tensile_columns()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("`ropewalk modes --csv`"), columns_markdown(mode_columns()));
   EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));

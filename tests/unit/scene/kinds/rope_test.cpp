@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "observe/centre_line.hpp"
+#include "observe/observe.hpp"
 #include "run/run_directory.hpp"
 #include "scene/loads/grip.hpp"
 #include "scene/prepare.hpp"
@@ -19,6 +21,7 @@
 #include "scene/scene_toml.hpp"
 #include "scene/spacing.hpp"
 #include "scene/state_csv.hpp"
+#include "sim/contact/contact_law.hpp"
 
 namespace ropewalk {
 namespace {
@@ -231,6 +234,125 @@ TEST(Rope, RefusesTubesThatCannotBePlaced) {
   EXPECT_THAT(message(seven + "stagger = \"brick\"\n"), HasSubstr("give tube_length_nm too"));
   EXPECT_THAT(message(finite + "tube_length_deviation_nm = 10\n"), HasSubstr("more than half of the mean length"));
   EXPECT_THAT(message(finite + "gap_nm = 0.1\n"), HasSubstr("they would be driven into one another"));
+}
+
+// What tubes of each pair of types keep apart, and how near each tube has come to others.
+struct Packed {
+  double overlap = 0, loosest = 0;  // nm: of the most pressed pair; of the second nearest tube, the largest of all
+  double rim = 0;                   // nm
+};
+Packed packed(const Scene& scene, const Prepared& p) {
+  Packed out;
+  const auto at = [&](int t) { return p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]; };
+  for (int a = 0; a < p.topology.tubes(); ++a) {
+    std::vector<double> holes;
+    for (int b = 0; b < p.topology.tubes(); ++b)
+      if (b != a) {
+        const TypePair types{p.topology.tube_type[static_cast<std::size_t>(a)],
+                             p.topology.tube_type[static_cast<std::size_t>(b)]};
+        holes.push_back((at(a) - at(b)).head<2>().norm() - pair_spacing(scene, p.interaction.law.get(), types));
+      }
+    std::sort(holes.begin(), holes.end());
+    out.overlap = std::max(out.overlap, -holes[0]);
+    out.loosest = std::max(out.loosest, holes[1]);
+    out.rim = std::max(out.rim, at(a).head<2>().norm());
+  }
+  return out;
+}
+const std::string both_sets = "[\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\ntype_shares = [0.5, 0.5]\n";
+Scene unlike(const std::string& rope) {
+  return scene_of_text("format = \"ropewalk-scene-1\"\nparameters = " + both_sets + "[rope]\nlength_nm = 6\n" +
+                           rope + "[run]\nduration_ps = 1\n",
+                       "rope.toml");
+}
+
+TEST(RopePacking, AtRandomNoPairIsPressedAndNoTubeLoose) {
+  for (const char* packing :
+       {"tubes = 61\npacking = \"random\"\n", "tubes = 61\n", "tubes = 20\npacking = \"round\"\n"}) {
+    Scene scene = unlike(packing);
+    const Prepared p = prepare(scene);
+    const Packed found = packed(scene, p);
+    EXPECT_LT(found.overlap, 1e-3) << packing;
+    EXPECT_LT(found.loosest, 0.12) << packing;
+  }
+  Scene scene = scene_of("tubes = 40\npacking = \"random\"\nlength_nm = 6\n");
+  const Prepared p = prepare(scene);
+  EXPECT_LT(packed(scene, p).overlap, 1e-3);
+  // As large as a disc of the area of their cells, with room for what a random packing leaves free.
+  EXPECT_LT(packed(scene, p).rim, 1.5 * p.spacing * std::sqrt(40 * std::sqrt(3) / (2 * units::pi)));
+  Scene other = scene_of("tubes = 40\npacking = \"random\"\nlength_nm = 6\n", "[start]\nseed = 2\n");
+  Scene again = scene_of("tubes = 40\npacking = \"random\"\nlength_nm = 6\n");
+  EXPECT_EQ(prepare(again).state.position.x, p.state.position.x);
+  EXPECT_NE(prepare(other).state.position.x, p.state.position.x);
+}
+
+// Tubes alike stay on their lattice, and with tubes in line each strand moves as a whole.
+TEST(RopePacking, DrawsUnlikeTubesTogetherAlone) {
+  Scene alike = scene_of("tubes = 19\nlength_nm = 6\n");
+  const Prepared lattice = prepare(alike);
+  EXPECT_NEAR(lattice.state.position.x[static_cast<std::size_t>(lattice.topology.tube_begin[1])], lattice.spacing,
+              1e-12);
+  Scene mixed = unlike("tubes = 19\n");
+  const auto mean_radius = [](const Prepared& p) {
+    double sum = 0;
+    for (std::size_t i = 0; i < p.state.size(); ++i) sum += p.state.position[i].head<2>().norm();
+    return sum / static_cast<double>(p.state.size());
+  };
+  EXPECT_LT(mean_radius(prepare(mixed)), 0.9 * mean_radius(lattice)) << "narrow tubes need less room";
+  Scene strands =
+      scene_of_text("format = \"ropewalk-scene-1\"\nparameters = " + both_sets +
+                        "[rope]\nlength_nm = 40\ntubes = 7\ntube_length_nm = 10\n[run]\nduration_ps = 1\n",
+                    "rope.toml");
+  const Prepared p = prepare(strands);
+  for (int t = 0; t < p.topology.tubes(); ++t)
+    for (int e = p.topology.tube_begin[t]; e < p.topology.tube_begin[t + 1]; ++e) {
+      if (p.topology.begins_strand(t)) continue;
+      EXPECT_EQ(p.state.position.x[static_cast<std::size_t>(e)],
+                p.state.position.x[static_cast<std::size_t>(p.topology.tube_begin[t] - 1)]);
+    }
+}
+
+TEST(RopePacking, TubesStayAtPlacesThatAreTyped) {
+  Scene scene = scene_of("tubes = 3\nlength_nm = 6\nplaces_nm = [[0, 0], [1.8, 0], [0, -2.5]]\n");
+  const Prepared p = prepare(scene);
+  EXPECT_EQ(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[2])].y(), -2.5);
+  Scene apart = unlike("tubes = 2\nplaces_nm = [[0, 0], [4, 0]]\n");
+  const Prepared unlike_pair = prepare(apart);
+  EXPECT_EQ(unlike_pair.state.position.x[static_cast<std::size_t>(unlike_pair.topology.tube_begin[1])], 4);
+  const auto message = [](const std::string& rope) -> std::string {
+    try {
+      Scene refused = scene_of(rope);
+      return "none";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  EXPECT_THAT(message("tubes = 3\nlength_nm = 6\nplaces_nm = [[0, 0], [1.8, 0]]\n"),
+              HasSubstr("rope.places_nm: has 2 places, and the rope has 3 tubes; write tubes = 2"));
+  EXPECT_THAT(message("tubes = 2\nlength_nm = 6\nplaces_nm = [[0, 0], [1, 0]]\n"),
+              HasSubstr("has the tubes 0 and 1 1 nm apart"));
+  EXPECT_THAT(message("tubes = 1\npacking = \"round\"\nlength_nm = 6\nplaces_nm = [[0, 0]]\n"),
+              HasSubstr("stands beside packing"));
+}
+
+// Tubes at the surface are outermost, and so are those at a hole with room for a tube.
+TEST(RopePacking, OutermostTubesAreThoseOfTheSurface) {
+  for (const char* rope : {"tubes = 91\npacking = \"random\"\n", "tubes = 91\n"}) {
+    Scene scene = unlike(rope);
+    const Prepared p = prepare(scene);
+    const RopeShells shells = rope_shells(p.topology, p.state, 0.5 * (1 + std::sqrt(3.0)) * p.spacing);
+    const double rim = packed(scene, p).rim;
+    int inside = 0, enclosed = 0;
+    for (int t = 0; t < p.topology.tubes(); ++t) {
+      const double r = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])].head<2>().norm();
+      if (r < 0.6 * rim) ++inside, enclosed += shells.internal[static_cast<std::size_t>(t)];
+      if (r > rim - 1e-9) {
+        EXPECT_TRUE(shells.outermost[static_cast<std::size_t>(t)]) << rope << t;
+      }
+    }
+    EXPECT_GT(inside, 20);
+    EXPECT_GT(enclosed, 0.85 * inside) << rope << ": but those beside a hole with room for a tube";
+  }
 }
 
 }  // namespace

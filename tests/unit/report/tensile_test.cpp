@@ -1,0 +1,106 @@
+// What a testing machine tells, from logs whose numbers are known.
+#include "report/tensile.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace ropewalk {
+namespace {
+
+using testing::HasSubstr;
+
+struct Point {
+  double strain, stress;
+};
+
+std::vector<LogRow> log_of(const std::vector<Point>& points) {
+  std::vector<LogRow> log(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    log[k]["time_ps"] = static_cast<double>(k);
+    log[k]["ends_strain"] = points[k].strain;
+    log[k]["stress_GPa"] = points[k].stress;
+    log[k]["specific_stress_N_per_tex"] = 0.5 * points[k].stress;
+    log[k]["beta_deg"] = 10 + static_cast<double>(k);
+    log[k]["links_formed"] = 40;
+    log[k]["links_broken"] = k + 1 == points.size() ? 6 : 0;
+  }
+  return log;
+}
+
+// 300 GPa up to 3 GPa, then straight down by as much.
+const std::vector<Point> pull = {{0, 0},         {0.0025, 0.75}, {0.005, 1.5},   {0.0075, 2.25}, {0.01, 3},
+                                 {0.0125, 2.25}, {0.015, 1.5},   {0.0175, 0.75}, {0.02, 0}};
+
+TEST(Tensile, NumbersOfAPull) {
+  const TensileTest t = tensile_test(log_of(pull), {9, 1, 3, 5, 7});
+  EXPECT_DOUBLE_EQ(t.strength, 3);
+  EXPECT_DOUBLE_EQ(t.specific, 1.5);
+  EXPECT_DOUBLE_EQ(t.strain, 0.01);
+  EXPECT_NEAR(t.modulus, 300, 1e-9);
+  // The triangle up to the peak and a trapezoid behind it, until the first row below half.
+  EXPECT_NEAR(t.toughness, 1e3 * (0.5 * 0.01 * 3 + 0.0075 * 0.5 * (3 + 0.75)), 1e-9);
+  EXPECT_NEAR(t.specific_toughness, 0.5 * t.toughness, 1e-12);
+  EXPECT_TRUE(t.to_half);
+  EXPECT_DOUBLE_EQ(t.links, 40);
+  EXPECT_DOUBLE_EQ(t.links_broken, 6);
+  EXPECT_DOUBLE_EQ(t.breaks_at, 5);
+  EXPECT_DOUBLE_EQ(t.breaks_within, 4);
+  EXPECT_DOUBLE_EQ(t.before["beta_deg"], 10);
+}
+
+// A yarn that grew shorter and longer while it was twisted at free length: what came before the pull has no part.
+TEST(Tensile, BeginsWhereTheLastPullBegins) {
+  std::vector<Point> points = {{0, 0}, {-0.01, 0.05}, {-0.004, -0.05}, {-0.002, 0.02}, {-0.0021, 0.01}};
+  for (const Point& p : pull) points.push_back({p.strain - 0.002, p.stress});
+  const TensileTest t = tensile_test(log_of(points), {});
+  EXPECT_DOUBLE_EQ(t.before["beta_deg"], 14);
+  EXPECT_NEAR(t.strain, 0.0101, 1e-12);
+  EXPECT_NEAR(t.modulus, 300, 5);
+  EXPECT_TRUE(std::isnan(t.breaks_at)) << "nothing broke";
+}
+
+// Twisted between clamps that hold its length, a rope is under tension before it is pulled.
+TEST(Tensile, BeginsWhereAHeldRopeIsDrawnOut) {
+  std::vector<Point> points = {{0, 0}, {0, 0.5}, {0, 1}, {0, 1}};
+  for (const Point& p : pull)
+    if (p.strain > 0) points.push_back({p.strain, 1 + p.stress});
+  const TensileTest t = tensile_test(log_of(points), {});
+  EXPECT_DOUBLE_EQ(t.before["beta_deg"], 13);
+  EXPECT_NEAR(t.modulus, 300, 1e-9);
+  EXPECT_DOUBLE_EQ(t.strength, 4);
+  EXPECT_TRUE(t.to_half);
+}
+
+TEST(Tensile, ARunThatEndsEarlyIsSaidToHave) {
+  std::vector<Point> part(pull.begin(), pull.begin() + 6);
+  EXPECT_FALSE(tensile_test(log_of(part), {}).to_half);
+  EXPECT_THROW(tensile_test(log_of({{0, 0}, {0.01, 0}}), {}), std::invalid_argument);
+}
+
+TEST(Tensile, TableAndFigureHaveMeansAndErrors) {
+  std::vector<Point> stronger = pull;
+  for (Point& p : stronger) p.stress *= 1.2;
+  const TensileTest a = tensile_test(log_of(pull), {1}), b = tensile_test(log_of(stronger), {3});
+  TensileTest wound = a;
+  wound.before["beta_deg"] = 25;
+  const std::vector<TensileGroup> groups = {{"l = 20", "20", {a, b}}, {"l = 20, wound", "20", {wound}}};
+  const std::string csv = tensile_csv(groups, "beta_deg");
+  EXPECT_THAT(csv, HasSubstr("run,replicates,to_half,beta_deg,strength_GPa,strength_GPa_standard_error,"));
+  EXPECT_THAT(csv, HasSubstr("\"l = 20\",2,2,10,3.3,0.3,1.65,0.15,0.01,0,330,30,"));
+  EXPECT_THAT(csv, HasSubstr("\"l = 20, wound\",1,1,25,3,nan,"));
+  const std::string svg = tensile_svg(groups, "beta_deg");
+  EXPECT_THAT(svg, HasSubstr("h6M")) << "a tick at each end of the bar";
+  EXPECT_THAT(svg, HasSubstr("cos²"));
+  EXPECT_THAT(tensile_svg(groups, "slip_nm"), testing::IsEmpty()) << "both are at the same place";
+  Figures figures;
+  const std::string part = tensile_part(groups, "beta_deg", "tube_length_nm", figures);
+  EXPECT_THAT(part, HasSubstr("<td>2 of 2</td>"));
+  EXPECT_THAT(part, HasSubstr("Lines: tube_length_nm."));
+  EXPECT_THAT(part, HasSubstr("3.30 ± 0.30"));
+}
+
+}  // namespace
+}  // namespace ropewalk
