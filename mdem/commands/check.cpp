@@ -9,6 +9,7 @@
 #include "plan/forecast.hpp"
 #include "run/moving_scene.hpp"
 #include "scene/memory.hpp"
+#include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
@@ -22,6 +23,7 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("{} tubes, {} elements of {:.4g} nm", t.tubes(), t.elements(), t.longest_element());
   const std::string description = scene.source->description(t, p.state, p.spacing);
   fmt::print("{}{}\n", description.empty() ? "" : ": ", description);
+  if (const std::string network = network_words(scene, t, p.state); !network.empty()) fmt::print("{}\n", network);
   if (holds_elements(scene) && !scene.has_ends(Drive::Ends::endless)) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
     const Topology strands = strands_of(t);

@@ -13,6 +13,7 @@
 #include "run/relaxation_loop.hpp"
 #include "run/run_manifest.hpp"
 #include "run/stages.hpp"
+#include "scene/network_words.hpp"
 
 namespace ropewalk {
 
@@ -77,6 +78,7 @@ RunResult Run::finish() {
   parts_.checkpoints.save_end();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
+  r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
     if (parts_.last_row["links_broken"] + parts_.last_row["bonds_broken"] > 0)

@@ -30,6 +30,7 @@ struct RunResult {
   double beyond = 0;     // the largest value over its limit, of the limits that were passed
   std::string damping;   // its part of the lost energy, in words
   std::string strength;  // of a rope that came apart, in words
+  std::string network;   // of a film at its end, in words
   std::string plan;      // planned and seen errors, in words
   std::string missing;   // files
   std::int64_t steps = 0;

@@ -14,6 +14,7 @@ constexpr int failed_or_incomplete = 3, not_relaxed = 4, at_limit = 5, by_wall_t
 void print_results(const RunResult& r) {
   if (!r.passed.empty()) print(fmt::format("Limits passed: {}\n", r.passed));
   if (!r.strength.empty()) print(r.strength + "\n");
+  if (!r.network.empty()) print("At the end " + r.network + ".\n");
   if (!r.damping.empty()) print(r.damping + "\n");
   if (!r.plan.empty()) print(r.plan + "\n");
   const std::string time = r.relaxes ? "" : fmt::format("{:.1f} ps, ", r.time_ps);

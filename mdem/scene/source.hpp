@@ -1,6 +1,7 @@
 // Where the elements of a scene come from.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "sim/state/state.hpp"
@@ -28,6 +29,9 @@ class Source {
   virtual double typed_spacing() const { return 0; }
   // nm, by which strands may slide along one another in a slice (Topology::images).
   virtual double slides() const { return 0; }
+  // The sides (nm) in x and y of a box centred on the origin, in which the tubes are laid at random; zeros: there
+  // is none.
+  virtual std::array<double, 2> box() const { return {0, 0}; }
   // Whether all tubes are straight and parallel to z.
   virtual bool is_parallel() const { return false; }
   // Whether tubes side by side are moved together, across the axis, until they touch. `unlike`: they are of several

@@ -123,6 +123,21 @@ TEST_F(Cli, ModesOfAChainAtRest) {
   EXPECT_EQ(run("run moved.toml --out d --quiet").code, 0);
 }
 
+// Of its start, of its end and in the report.
+TEST_F(Cli, FilmsTellHowTheirTubesHangTogether) {
+  spit(dir / "film.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[film]\ntubes = 40\nlength_nm = 15\n"
+       "width_nm = 30\ndepth_nm = 30\nlaid = \"resting\"\n[run]\nduration_ps = 0.2\n");
+  const std::string words = "the tubes hang together in the largest cluster, and the box is spanned in x and in y";
+  EXPECT_NE(run("check film.toml").out.find(words + "\n"), std::string::npos);
+  const Outcome o = run("run film.toml --out d --quiet");
+  EXPECT_NE(o.out.find("At the end a tube touches "), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find(words + ".\n"), std::string::npos) << o.out;
+  const std::string report = slurp(dir / "d/report.html");
+  EXPECT_NE(report.find("network at first"), std::string::npos);
+  EXPECT_NE(report.find("network in the end"), std::string::npos);
+}
+
 TEST_F(Cli, ModesOfWhatIsNotAtRestAreRefused) {
   const std::string head = "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n",
                     chain = head + "[chain]\nelements = 20\n";

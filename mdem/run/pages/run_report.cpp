@@ -14,6 +14,7 @@
 #include "run/pages/run_views.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
+#include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 
 namespace ropewalk {
@@ -77,6 +78,20 @@ void add_strength(const Scene& scene, ReportInput& in) {
                       fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
                                   last["links_formed"], last["bonds_broken"]),
                       "events.csv says when and where"});
+}
+
+// Of a film: how its tubes hang together, at first and in the end.
+void add_network(const Scene& scene, const StoredEvents& events, const std::vector<StoredFrame>& frames,
+                 ReportInput& in) {
+  if (frames.empty()) return;
+  const auto words = [&](const StoredFrame& frame) {
+    return network_words(scene, events.tubes_at(frame.state.time), frame.state);
+  };
+  const std::string at_first = words(frames.front());
+  if (at_first.empty()) return;
+  const std::string touch = fmt::format("tubes touch within {} times the distance of crossed ones", touching);
+  in.facts.push_back({"network at first", at_first, touch});
+  in.facts.push_back({"network in the end", words(frames.back()), touch});
 }
 
 // Within some twenty degrees of one direction.
@@ -148,7 +163,9 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
   const StoredEvents events(dir.events(), p.topology);
-  for (const StoredFrame& frame : read_frames(dir, p.topology)) {
+  const std::vector<StoredFrame> frames = read_frames(dir, p.topology);
+  add_network(scene, events, frames, in);
+  for (const StoredFrame& frame : frames) {
     const Topology now = events.tubes_at(frame.state.time);
     const RopeObservation o = observe(observer, scene, now, frame.state);
     const double beta = o.beta / units::degree;

@@ -36,42 +36,6 @@ void check_film(const TomlTable& t, const Scene& scene, FilmSource& film) {
                   fmt::format("at most {} times makes a film; take a larger box or fewer tubes", max_coverage));
 }
 
-struct Corner {
-  double x = 0, y = 0;
-};
-
-double squared(double x) { return x * x; }
-
-double from_segment2(const Corner& p, const Corner& a, const Corner& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  const double along = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
-  const double t = std::min(std::max(along, 0.0), 1.0);
-  return squared(p.x - a.x - t * dx) + squared(p.y - a.y - t * dy);
-}
-
-// Twice the area of a triangle, positive where it is counter-clockwise.
-double area(const Corner& a, const Corner& b, const Corner& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-struct Footprint {
-  Corner from, to;
-
-  Footprint(const FilmTube& t, double length) {
-    const double x = 0.5 * length * std::cos(t.angle), y = 0.5 * length * std::sin(t.angle);
-    from = {t.x - x, t.y - y};
-    to = {t.x + x, t.y + y};
-  }
-};
-
-double distance2(const Footprint& a, const Footprint& b) {
-  if (area(a.from, a.to, b.from) * area(a.from, a.to, b.to) < 0 &&
-      area(b.from, b.to, a.from) * area(b.from, b.to, a.to) < 0)
-    return 0;
-  return std::min({from_segment2(a.from, b.from, b.to), from_segment2(a.to, b.from, b.to),
-                   from_segment2(b.from, a.from, a.to), from_segment2(b.to, a.from, a.to)});
-}
-
 // Squares of the box with the tubes that pass through them. A tube is known by points along it, at most `step`
 // apart: tubes closer than the spacing have points within spacing + step, hence in squares of that width that
 // touch.
@@ -115,11 +79,10 @@ class Floor {
   // One square more than needed on each side, so that every square has neighbours.
   template <class F>
   void each_point(const FilmTube& t, F f) const {
-    const Footprint s(t, length_);
+    const double x = length_ * std::cos(t.angle), y = length_ * std::sin(t.angle);
     for (int k = 0; k < points_; ++k) {
-      const double part = static_cast<double>(k) / (points_ - 1);
-      f(square(s.from.x + part * (s.to.x - s.from.x) - left_, columns_),
-        square(s.from.y + part * (s.to.y - s.from.y) - front_, rows_));
+      const double part = static_cast<double>(k) / (points_ - 1) - 0.5;
+      f(square(t.x + part * x - left_, columns_), square(t.y + part * y - front_, rows_));
     }
   }
   int square(double along, int count) const {
@@ -142,7 +105,12 @@ struct Barred {
   double from = 0, to = 0;
 };
 
-double lowest_free(std::vector<Barred>& barred) {
+double lowest_free(const FilmTube& tube, const std::vector<FilmTube>& others, double length, double spacing) {
+  std::vector<Barred> barred;
+  for (const FilmTube& other : others) {
+    const double room = spacing * spacing - projected_distance2(tube, other, length);
+    if (room > 0) barred.push_back({other.z - std::sqrt(room), other.z + std::sqrt(room)});
+  }
   std::sort(barred.begin(), barred.end(), [](const Barred& a, const Barred& b) { return a.from < b.from; });
   double height = 0;
   for (const Barred& b : barred) {
@@ -175,37 +143,42 @@ std::uint64_t along_curve(const FilmTube& t, const FilmSource& film, double squa
 
 }  // namespace
 
-double projected_distance2(const FilmTube& a, const FilmTube& b, double length) {
-  return distance2(Footprint(a, length), Footprint(b, length));
-}
-
 std::vector<FilmTube> lay_film(const FilmSource& film, int elements, double element_length, double spacing,
                                Random& random) {
-  const double length = elements * element_length, spacing2 = spacing * spacing;
+  const double length = elements * element_length;
   Floor floor(film, length, spacing, element_length);
-  std::vector<FilmTube> tubes;
+  std::vector<FilmTube> tubes, below;
   std::vector<int> near;
-  std::vector<Barred> barred;
   for (int t = 0; t < film.tubes; ++t) {
     FilmTube tube = random_tube(film, length, random);
     floor.near(tube, t, near);
-    barred.clear();
-    for (const int other : near) {
-      const FilmTube& o = tubes[static_cast<std::size_t>(other)];
-      const double apart2 = projected_distance2(tube, o, length);
-      if (apart2 >= spacing2) continue;
-      const double half = std::sqrt(spacing2 - apart2);
-      barred.push_back({o.z - half, o.z + half});
-    }
-    tube.z = lowest_free(barred);
+    below.clear();
+    for (const int other : near) below.push_back(tubes[static_cast<std::size_t>(other)]);
+    if (film.laid == FilmSource::Laid::resting)
+      let_down(tube, below, length, spacing);
+    else
+      tube.z = lowest_free(tube, below, length, spacing);
     floor.add(t, tube);
     tubes.push_back(tube);
   }
-  const double square = 0.5 * length;
-  std::stable_sort(tubes.begin(), tubes.end(), [&](const FilmTube& a, const FilmTube& b) {
-    return along_curve(a, film, square) < along_curve(b, film, square);
-  });
   return tubes;
+}
+
+void put_tubes(const std::vector<FilmTube>& tubes, int elements, double element_length, Topology& topology,
+               State& state) {
+  for (std::size_t t = 0; t < tubes.size(); ++t) topology.add_tube(elements);
+  state = State(static_cast<std::size_t>(topology.elements()));
+  std::size_t i = 0;
+  for (const FilmTube& t : tubes) {
+    const Vector3 axis = t.axis();
+    const double x = std::cos(t.angle), y = std::sin(t.angle);
+    const double w = std::sqrt(0.5 * (1 + axis.z())), turned = std::sqrt(0.5 * (1 - axis.z()));
+    for (int e = 0; e < elements; ++e, ++i) {
+      const double s = (e - 0.5 * (elements - 1)) * element_length;
+      state.position.set(i, t.middle() + s * axis);
+      state.orientation.set(i, Quaternion(w, -turned * y, turned * x, 0));  // from z to the tube's direction
+    }
+  }
 }
 
 SceneKind film_kind() {
@@ -223,7 +196,13 @@ SceneKind film_kind() {
                     "side of the box in y, not shorter than the tubes"),
         Key::number("spacing_nm", unit::nm, spacing_bounds, &FilmSource::spacing,
                     otherwise("1.7", "where two crossed tubes bind best"),
-                    "no two tube axes are closer at the start")},
+                    "no two tube axes are closer at the start"),
+        Key::word(
+            "laid",
+            Words<FilmSource::Laid>{{"level", FilmSource::Laid::level}, {"resting", FilmSource::Laid::resting}},
+            &FilmSource::laid, standard(),
+            "\"level\": flat, at the lowest free height; \"resting\": tilted, on the two tubes below that "
+            "hold it up on either side of its middle, or on the plane")},
        check_film});
 }
 
@@ -233,20 +212,13 @@ Source::Sizes FilmSource::sizes(double element_length) const {
 
 void FilmSource::place(const Scene& scene, double, Random& random, Topology& topology, State& state) const {
   const int elements = sizes(scene.element_length).elements;
-  const double a = scene.element_length, half = std::sqrt(0.5);
-  const std::vector<FilmTube> laid =
-      lay_film(*this, elements, a, spacing > 0 ? spacing : crossed_spacing(scene), random);
-  for (std::size_t t = 0; t < laid.size(); ++t) topology.add_tube(elements);
-  state = State(static_cast<std::size_t>(topology.elements()));
-  std::size_t i = 0;
-  for (const FilmTube& t : laid) {
-    const double x = std::cos(t.angle), y = std::sin(t.angle);
-    for (int e = 0; e < elements; ++e, ++i) {
-      const double s = (e - 0.5 * (elements - 1)) * a;
-      state.position.set(i, {t.x + s * x, t.y + s * y, t.z});
-      state.orientation.set(i, Quaternion(half, -half * y, half * x, 0));  // from z to the tube's direction
-    }
-  }
+  const double a = scene.element_length;
+  std::vector<FilmTube> laid = lay_film(*this, elements, a, spacing > 0 ? spacing : crossed_spacing(scene), random);
+  const double square = 0.5 * elements * a;
+  std::stable_sort(laid.begin(), laid.end(), [&](const FilmTube& one, const FilmTube& other) {
+    return along_curve(one, *this, square) < along_curve(other, *this, square);
+  });
+  put_tubes(laid, elements, a, topology, state);
 }
 
 std::string FilmSource::description(const Topology&, const State& state, double) const {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -129,6 +130,10 @@ TEST(Film, IsThatOfItsSeed) {
   EXPECT_EQ(a.state.position.x, b.state.position.x);
   EXPECT_EQ(a.state.position.z, b.state.position.z);
   EXPECT_NE(a.state.position.x, c.state.position.x);
+  const BuiltScene d = film(dense + "laid = \"resting\"\n"), e = film(dense + "laid = \"resting\"\n");
+  EXPECT_EQ(d.state.position.z, e.state.position.z);
+  EXPECT_EQ(d.state.orientation.w, e.state.orientation.w);
+  EXPECT_NE(d.state.position.z, a.state.position.z);
 }
 
 TEST(Film, OneLayerStaysOne) {
@@ -143,12 +148,97 @@ TEST(Film, MixedTubesKeepTheWidestSpacing) {
   EXPECT_GT(closest(rods(b), 0.5 * 15 * element), 2 * 0.6887);
 }
 
-TEST(Film, ProjectedDistance) {
-  const FilmTube flat{0, 0, 0, 0};
-  EXPECT_EQ(projected_distance2(flat, {0.5, 0.5, 3, 0.5 * units::pi}, 4), 0);
-  EXPECT_NEAR(projected_distance2(flat, {1, 2, 3, 0}, 4), 4, 1e-12);
-  EXPECT_NEAR(projected_distance2(flat, {5, 2, 3, 0}, 4), 1 + 4, 1e-12);
-  EXPECT_NEAR(projected_distance2(flat, {0.5, 3, 0, 0.5 * units::pi}, 4), 1, 1e-12);
+constexpr double spaced = 1.7;
+
+std::vector<FilmTube> laid_on_others(FilmSource::Laid laid) {
+  FilmSource film;
+  film.tubes = 400;
+  film.length = 27.6;
+  film.width = film.depth = 90;
+  film.laid = laid;
+  Random random(5);
+  return lay_film(film, 20, 1.38, spaced, random);
+}
+
+// From above, one of the tubes ends at the spacing from another one.
+bool has_an_end_beside(const std::vector<FilmTube>& tubes, std::size_t tube, double half) {
+  const auto from_above = [](const Vector3& v) { return Vector3(v.x(), v.y(), 0); };
+  const auto is_beside = [&](const FilmTube& ending, const FilmTube& other) {
+    const Vector3 along = from_above(other.axis());
+    for (const double end : {-half, half}) {
+      const Vector3 to = from_above(ending.middle() + end * ending.axis() - other.middle());
+      const double at = std::clamp(to.dot(along) / along.squaredNorm(), -half, half);
+      if (std::fabs((to - at * along).norm() - spaced) < 1e-6) return true;
+    }
+    return false;
+  };
+  for (std::size_t o = 0; o < tube; ++o)
+    if (is_beside(tubes[tube], tubes[o]) || is_beside(tubes[o], tubes[tube])) return true;
+  return false;
+}
+
+// What holds each tube on the left and on the right of its middle, or under it. No earlier one is within the
+// spacing.
+TEST(Film, RestingTubesHaveASupportOnEitherSide) {
+  const double half = 13.8;
+  const std::vector<FilmTube> tubes = laid_on_others(FilmSource::Laid::resting);
+  int on_plane = 0, beside = 0;
+  for (std::size_t t = 0; t < tubes.size(); ++t) {
+    const Vector3 middle = tubes[t].middle(), axis = tubes[t].axis();
+    bool left = false, right = false;
+    const auto held = [&](double along) {
+      if (along < 1e-4) left = true;
+      if (along > -1e-4) right = true;
+    };
+    for (const double end : {-half, half}) {
+      const double height = middle.z() + end * axis.z();
+      EXPECT_GT(height, -1e-9);
+      if (height < 1e-6) held(end), ++on_plane;
+    }
+    for (std::size_t o = 0; o < t; ++o) {
+      const Vector3 to = tubes[o].middle() - middle, other = tubes[o].axis();
+      const double apart = segment_distance(middle, axis, tubes[o].middle(), other, half);
+      EXPECT_GT(apart, spaced - 1e-6) << t << " and " << o;
+      if (apart > spaced + 1e-6) continue;
+      const double cosine = axis.dot(other);
+      double along = (to.dot(axis) - cosine * to.dot(other)) / (1 - cosine * cosine);
+      along = std::clamp(along, -half, half);
+      const double on_other = std::clamp(cosine * along - to.dot(other), -half, half);
+      held(std::clamp(to.dot(axis) + cosine * on_other, -half, half));
+    }
+    if (left && right) continue;
+    ++beside;
+    EXPECT_TRUE(has_an_end_beside(tubes, t, half)) << "tube " << t << " would fall";
+  }
+  EXPECT_LT(beside, 40);
+  EXPECT_GT(on_plane, 20);
+  EXPECT_LT(on_plane, 400);
+}
+
+TEST(Film, RestingTubesKeepTheirLengthAndTheBox) {
+  const BuiltScene b = film(dense + "laid = \"resting\"\n");
+  double steepest = 0;
+  for (int t = 0; t < b.topology.tubes(); ++t)
+    for (int i = b.topology.tube_begin[t]; i + 1 < b.topology.tube_begin[t + 1]; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Vector3 axis = axis_of(b.state.orientation[at]);
+      EXPECT_LT((b.state.position[at + 1] - b.state.position[at] - element * axis).norm(), 1e-12);
+      EXPECT_LE(std::fabs(b.state.position.x[at]), 30);
+      EXPECT_LE(std::fabs(b.state.position.y[at]), 20);
+      steepest = std::max(steepest, std::fabs(axis.z()));
+    }
+  EXPECT_GT(steepest, 0.1);
+  Scene scene = film_scene(dense);
+  EXPECT_NEAR(closest(rods(b), 10 * element), crossed_spacing(scene), 1e-8);
+}
+
+TEST(Film, BothWaysOfLayingTakeTheSamePlaces) {
+  const auto resting = laid_on_others(FilmSource::Laid::resting), level = laid_on_others(FilmSource::Laid::level);
+  for (std::size_t t = 0; t < level.size(); ++t) {
+    EXPECT_EQ(resting[t].x, level[t].x);
+    EXPECT_EQ(resting[t].angle, level[t].angle);
+    EXPECT_EQ(level[t].tilt, 0);
+  }
 }
 
 TEST(Film, WrongKeysAreRefused) {
@@ -169,6 +259,7 @@ TEST(Film, WrongKeysAreRefused) {
   EXPECT_THAT(words("tubes = 0\nlength_nm = 20\n" + box), HasSubstr("film.tubes"));
   EXPECT_THAT(words("length_nm = 20\n" + box), HasSubstr("film.tubes: is missing"));
   EXPECT_THAT(words("tubes = 10\nlength_nm = 20\nspacing_nm = 0.5\n" + box), HasSubstr("film.spacing_nm"));
+  EXPECT_THAT(words("tubes = 10\nlength_nm = 20\nlaid = \"hanging\"\n" + box), HasSubstr("film.laid"));
   EXPECT_THAT(words("tubes = 10\nlength_nm = 20\nwidth_nm = 60\n"), HasSubstr("film.depth_nm: is missing"));
   EXPECT_THAT(words("tubes = 10\nlength_nm = 20\n" + box + "[chain]\nelements = 5\n"),
               HasSubstr("chain: stands beside [film]"));
