@@ -16,6 +16,7 @@
 #include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
+#include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/prepare.hpp"
@@ -214,7 +215,7 @@ struct Setting {
   std::size_t number;
 };
 
-constexpr const char* length_key = "element_length_nm";
+constexpr const char *length_key = "element_length_nm", *seed_key = "start.seed";
 
 // Resizes the tubes of a point for another element length, so that their free length stays as near as whole
 // elements go. `before`: the scene with its old element length. The text stays as it is for a wrong scene, which
@@ -280,6 +281,14 @@ void write_scene(const Sweep& s, SweepPoint& p) {
     set(k);
     keep_free_length(s, before, leading_number(p.values[k]).value_or(0), p.text);
   }
+  // What a plan promises holds for the scene that was planned, with any seed.
+  if (expectations_of(s.scene_text).errors.empty()) return;
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    if (axes[k]->key != seed_key &&
+        with_value(s.scene_text, axes[k]->key, p.values[k], s.scene_path) != s.scene_text) {
+      p.text = without_promises(p.text);
+      return;
+    }
 }
 
 // A wrong scene: named by the point, since it is in no file yet.
@@ -375,7 +384,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
     throw top.error("branch", "varies nothing", "add [branch.vary] with the keys that change at at_ps");
   check_zip(s);
   if (s.replicates > 0) {
-    SweepAxis seed{"start.seed", {}, top.line("replicates")};
+    SweepAxis seed{seed_key, {}, top.line("replicates")};
     for (int k = 1; k <= s.replicates; ++k) seed.values.push_back(fmt::format("{}", k));
     s.axes.push_back(seed);
   }

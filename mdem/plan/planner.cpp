@@ -347,6 +347,19 @@ Expectations expectations_of(const std::string& text) {
   return out;
 }
 
+std::string without_promises(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string planned = "# Planned for";
+    if (line.rfind("# plan:", 0) == 0) continue;
+    if (line.rfind(planned, 0) == 0)
+      line = "# The scene that this one was made from was planned for" + line.substr(planned.size());
+    out += line + "\n";
+  }
+  return out;
+}
+
 std::string expectation_lines(const Expectations& e) {
   std::string text = fmt::format("# plan: asked {:.6g}\n", e.asked);
   if (e.seconds > 0) text += fmt::format("# plan: seconds {:.4g}\n", e.seconds);

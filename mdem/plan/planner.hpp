@@ -77,6 +77,9 @@ struct Expectations {
   std::map<std::string, double> errors;  // promised, by observable
 };
 Expectations expectations_of(const std::string& text);
+// The text of a planned scene without its promises, for a scene that differs from the one that was planned by more
+// than its seed. The model stays.
+std::string without_promises(const std::string& text);
 // These lines, to be set before the text of a scene.
 std::string expectation_lines(const Expectations& expectations);
 
