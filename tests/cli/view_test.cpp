@@ -156,6 +156,30 @@ TEST_F(View, LinksAreThereAsLongAsTheyHold) {
   EXPECT_NE(slurp(dir / "d/report.html").find("Red: links"), std::string::npos);
 }
 
+// A tube that breaks is two tubes of the page, which meet as long as it holds.
+TEST_F(View, TubesThatBreakAreDrawnInTheirParts) {
+  NEEDS_CHROMIUM;
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 20\n"
+       "[failure]\nstrain = 0.05\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = [[0, 0], "
+       "[20, "
+       "0.1]] }\n[run]\nduration_ps = 20\nlog_every_ps = 5\nframes_every_ps = 5\n");
+  const Outcome o = run("run s.toml --out d --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const std::string events = slurp(dir / "d/events.csv");
+  ASSERT_NE(events.find(",tube broke,"), std::string::npos);
+  const auto breaks = std::count(events.begin(), events.end(), '\n') - 1;
+  ASSERT_EQ(run("view d").code, 0);
+  const std::string page = slurp(dir / "d/view.html"), key = "\"tube_begin\":[";
+  const std::size_t from = page.find(key), to = page.find(']', from);
+  EXPECT_EQ(std::count(page.begin() + static_cast<long>(from), page.begin() + static_cast<long>(to), ','),
+            7 + breaks);
+  for (const char* frame : {"#frame=1", ""}) {
+    const Browsed seen = looked([&] { return browse("d/view.html", frame); }, is_settled);
+    EXPECT_EQ(seen.console(), "") << "the page finds the extremes and sums of the frame again";
+  }
+}
+
 TEST_F(View, ADamagedPageSaysSo) {
   NEEDS_CHROMIUM;
   run_rope();

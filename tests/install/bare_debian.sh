@@ -75,6 +75,7 @@ as_user 'ropewalk export seven.toml --lammps there && cd there && lmp-ropewalk -
 # A program of one's own, with what libropewalk-dev brings, a compiler and CMake.
 inside apt-get install -y -qq --no-install-recommends cmake g++ make >/dev/null
 cp -r "$(dirname "$0")/consumer" "$root/home/somebody/"
+inside chown -R somebody: /home/somebody/consumer
 as_user 'cmake -S consumer -B built -DCMAKE_BUILD_TYPE=Release && cmake --build built && mkdir elsewhere && mv built/twist elsewhere && rm -r built consumer && cd elsewhere && ./twist' > "$work/said" 2>&1 ||
   fail "a program of one's own: $(tail -3 "$work/said")"
 grep -q "70 elements" "$work/said" || fail "a program of one's own has another rope: $(tail -3 "$work/said")"

@@ -28,6 +28,18 @@ std::vector<Vector3> joints_of(const Topology& topology, const State& state) {
   return out;
 }
 
+// The same for tubes that were cut into these pieces later: both ends at a cut are the joint that is there now.
+std::vector<Vector3> joints_of_pieces(const Topology& pieces, const Topology& now, const State& state) {
+  const std::vector<Vector3> joints = joints_of(now, state);
+  std::vector<Vector3> out;
+  for (int t = 0; t < pieces.tubes(); ++t) {
+    const int from = pieces.tube_begin[t], to = pieces.tube_begin[t + 1];
+    out.push_back(joints[static_cast<std::size_t>(from + now.tube_of(from))]);
+    for (int e = from; e < to; ++e) out.push_back(joints[static_cast<std::size_t>(e + now.tube_of(e) + 1)]);
+  }
+  return out;
+}
+
 // nN: the mean of the bonds of an element.
 std::vector<double> tension_of_elements(const Topology& topology, const State& state) {
   std::vector<double> out;
@@ -83,7 +95,7 @@ std::vector<ColourField> colour_fields() {
 }
 
 // Quantities that some frame lacks are left out.
-std::vector<ViewField> fields_of(const Topology& topology, const std::vector<StoredFrame>& frames,
+std::vector<ViewField> fields_of(const StoredEvents& events, const std::vector<StoredFrame>& frames,
                                  const std::vector<LogRow>& log) {
   std::vector<ViewField> out;
   for (ColourField& colour : colour_fields()) {
@@ -103,7 +115,7 @@ std::vector<ViewField> fields_of(const Topology& topology, const std::vector<Sto
   ViewField tension{"Tension", "nN", "along the tube, mean of the bonds of the element; negative: pressed",
                     true,      {},   {}};
   for (const StoredFrame& f : frames) {
-    tension.values.push_back(tension_of_elements(topology, f.state));
+    tension.values.push_back(tension_of_elements(events.tubes_at(f.state.time), f.state));
     tension.log_total.push_back(none);
   }
   out.push_back(std::move(tension));
@@ -115,25 +127,30 @@ std::vector<ViewField> fields_of(const Topology& topology, const std::vector<Sto
 ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared& p, std::size_t most_frames) {
   ViewInput in;
   in.name = scene.name;
-  in.tube_begin = p.topology.tube_begin;
-  for (int t = 0; t < p.topology.tubes(); ++t) in.tube_radius.push_back(p.topology.type_of(t).radius);
+  const StoredEvents events(dir.events(), p.topology);
+  // Tubes are drawn in the parts in which they end: before they break, these meet.
+  const Topology pieces = events.tubes_at(std::numeric_limits<double>::infinity());
+  in.tube_begin = pieces.tube_begin;
+  for (int t = 0; t < pieces.tubes(); ++t) in.tube_radius.push_back(pieces.type_of(t).radius);
   in.stored_frames = frame_times(dir, p.topology).size();
   const std::vector<StoredFrame> frames = frames_of(dir, p.topology, evenly(in.stored_frames, most_frames));
   for (const StoredFrame& f : frames) {
     in.time_ps.push_back(f.state.time);
     in.step.push_back(f.state.step);
-    in.joints.push_back(joints_of(p.topology, f.state));
+    in.joints.push_back(joints_of_pieces(pieces, events.tubes_at(f.state.time), f.state));
   }
-  in.fields = fields_of(p.topology, frames, read_log(dir.log()));
+  in.fields = fields_of(events, frames, read_log(dir.log()));
   const Observer observer = make_observer(scene, p);
   if (is_rope(p, observer))
-    if (const std::vector<int> shells = shells_of(observer.loading); !shells.empty())
-      in.tube_numbers.push_back({"Shell", "ring of the rope, 0: the innermost tube", shells});
-  if (scene.sets.size() > 1)
-    in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", p.topology.tube_type});
-  const StoredEvents events(dir.events(), p.topology);
+    if (const std::vector<int> shells = shells_of(observer.loading); !shells.empty()) {
+      std::vector<int> of_pieces;
+      for (int t = 0; t < pieces.tubes(); ++t)
+        of_pieces.push_back(shells[static_cast<std::size_t>(p.topology.tube_of(pieces.tube_begin[t]))]);
+      in.tube_numbers.push_back({"Shell", "ring of the rope, 0: the innermost tube", of_pieces});
+    }
+  if (scene.sets.size() > 1) in.tube_numbers.push_back({"Type of tube", "parameter set, from 0", pieces.tube_type});
   for (const StoredEvents::Link& l : events.links())
-    in.links.push_back({l.a + p.topology.tube_of(l.a), l.b + p.topology.tube_of(l.b), l.formed, l.broke});
+    in.links.push_back({l.a + pieces.tube_of(l.a), l.b + pieces.tube_of(l.b), l.formed, l.broke});
   const std::vector<RopeView> ends = {view_of(events, frames.front(), none), view_of(events, frames.back(), none)};
   const double radius = p.topology.largest_radius();
   const bool film = p.topology.tubes() > 1 && !is_rope(p, observer);  // lies flat
