@@ -171,6 +171,10 @@ void SteppedScene::drive(std::shared_ptr<const Scene> as) {
                      "a clamp stays where it is; let go of it by \"free\" for each of its axes");
   for (const auto& force : own_) OwnForce::add_load(force, loads);
   simulation_.use_loads(std::move(loads));
+  Stepping stepping = simulation_.stepping();
+  stepping.thermostat = nullptr;
+  for (const auto& drive : scene.drives) drive->set_stepping(stepping);
+  simulation_.use_thermostat(stepping.thermostat);
   driven_ = std::move(as);
   forget();
 }

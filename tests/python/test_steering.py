@@ -212,6 +212,33 @@ class ChangeTest(FolderTest):
             again.restore(bytes(damaged))
         self.assertEqual(again, ropewalk.Simulation(TUBE))
 
+    def test_the_bath_changes_and_its_heat_counts(self):
+        scene = ropewalk.Scene({
+            "parameters": "cnt-10-10-tersoff", "chain": {"elements": 60}, "damping": {"bond_damping_per_ps": 0},
+            "start": {"temperature_K": 600}, "thermostat": {"temperature_K": 300, "coupling_per_ps": 5},
+            "run": {"duration_ps": 20}})
+        hot = ropewalk.Simulation(scene)
+
+        def kinetic():  # eV, mean of the last 4 of 6 ps, by which the bath has its way
+            values = []
+            hot.step(round(2 / (1e-3 * hot.time_step_fs)))
+            for _ in range(100):
+                hot.step(round(0.04 / (1e-3 * hot.time_step_fs)))
+                values.append(hot.measure("kinetic_eV"))
+            return np.mean(values)
+
+        cold = kinetic()
+        hot.change({"thermostat.temperature_K": 900})
+        self.assertEqual(hot.scene["thermostat.temperature_K"], 900)
+        self.assertAlmostEqual(kinetic() / cold, 3, delta=0.5)
+        hot.save("warm")
+        again = ropewalk.Simulation(scene)
+        again.restore("warm")
+        for s in (hot, again):
+            s.step(20)
+        np.testing.assert_array_equal(again.state.velocity, hot.state.velocity)
+        self.assertLess(abs(hot.measure("balance_eV")), 0.02 * abs(hot.measure("thermostat_eV")))
+
     def test_the_rest_of_the_scene_stays(self):
         simulation = ropewalk.Simulation(TUBE)
         before = simulation.checkpoint()

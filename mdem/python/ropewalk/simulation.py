@@ -17,7 +17,7 @@ from .state import Elements, Floats, State
 _most_steps = 2**53  # beyond, a log has no place for their number
 
 
-_DRIVES = ("grip", "load", "twist")  # the tables that change() may change
+_DRIVES = ("grip", "load", "thermostat", "twist")  # the tables that change() may change
 
 
 @dataclass(frozen=True)
@@ -215,8 +215,8 @@ class Simulation:
         ))
 
     def change(self, changes: Mapping[str, Any]) -> None:
-        """From now on grips, loads and twist are those of `scene.changed(changes)` at this time: a moment jumps to its new
-        value, a clamp moves on from where it is, by what its new schedule rises. All else of the scene stays.
+        """From now on grips, loads, twist and bath are those of `scene.changed(changes)` at this time: a moment jumps to its new
+        value, a clamp moves on from where it is, by what its new schedule rises. All else of the scene stays, the time step too.
 
         Arguments:
             changes: values by key, with the table before it, as of Scene.changed: {"twist.moment_nN_nm": 6},

@@ -81,6 +81,8 @@ class Simulation {
   // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their work
   // there counts. The gauges stay on their elements.
   void use_loads(LoadsAndConstraints loads);
+  // From the next step on; none: no bath. Its heat so far stays in the account.
+  void use_thermostat(std::shared_ptr<const Thermostat> thermostat) { stepping_.thermostat = std::move(thermostat); }
   // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
   void set_gauges(EndElements ends, const State& start) { gauges_ = Gauges(topology_, std::move(ends), start); }
   // Mean forces and torques at both ends since the last reading; those of this moment where no time has passed.
