@@ -327,7 +327,7 @@ TEST_F(Cli, MixedTubesRunAndResume) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"
        "tube_types = [1, 0, 0, 0, 0, 0, 1]\n[rope]\ntubes = 7\nlength_nm = 14\n[start]\ntemperature_K = "
-       "50\nmay_cool = true\n"
+       "50\nmay_cool = true\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 2\n"
        "[run]\nduration_ps = 2\nframes_every_ps = 1\nlog_every_ps = 0.5\n");
   const Outcome check = run("check s.toml");
   ASSERT_EQ(check.code, 0) << check.err;
