@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -15,31 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The keys that tell the lines of a figure apart: those that vary, but the first and the seed, by their place among
-// the values of replicates.
-std::vector<std::pair<std::size_t, std::string>> line_keys(const Sweep& sweep) {
-  std::vector<std::pair<std::size_t, std::string>> out;
-  std::size_t place = 0;
-  bool first = true;
-  for (const std::string& key : sweep.keys()) {
-    if (key == "start.seed") continue;
-    if (sweep.varies(key)) {
-      if (!first) out.emplace_back(place, leaf_of(key));
-      first = false;
-    }
-    ++place;
-  }
-  return out;
-}
-
 // The runs of a campaign; those that differ in their seed alone are one group.
 std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   const Sweep sweep = read_campaign(dir);
-  const auto keys = line_keys(sweep);
+  std::vector<std::string> keys = sweep.keys();  // in the order of the values of replicates
+  keys.erase(std::remove(keys.begin(), keys.end(), "start.seed"), keys.end());
+  const auto first = std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return sweep.varies(key); });
   std::vector<RunGroup> groups;
   for (const Replicates& r : replicates_of(sweep, points_of(sweep, PointsAs::scenes))) {
-    RunGroup group{r.name, {}, {}};
-    for (const auto& [place, key] : keys) group.line += (group.line.empty() ? "" : ", ") + r.values[place];
+    RunGroup group{r.name, {}, {}, {}};
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (!sweep.varies(keys[k]) || keys[k] == *first) continue;
+      const char* comma = group.line.empty() ? "" : ", ";
+      group.line_keys += comma + leaf_of(keys[k]);
+      group.line += comma + r.values[k];
+    }
     for (const SweepPoint& p : r.points)
       if (fs::exists(dir.point(p.name).log())) group.runs.push_back(dir.point(p.name));
     if (!group.runs.empty()) groups.push_back(std::move(group));
@@ -69,15 +60,7 @@ std::vector<RunGroup> groups_in(const std::string& path) {
     throw InputError({path, 0, ""}, "is not the directory of a run", "name runs or campaigns alone, or sets alone");
   const CampaignDirectory campaign{path};
   if (fs::exists(campaign.sweep())) return groups_of(campaign);
-  return {{last_part_of(path), "", {RunDirectory{path}}}};
-}
-
-std::string line_keys_in(const std::string& path) {
-  const CampaignDirectory campaign{path};
-  if (!fs::exists(campaign.sweep())) return "";
-  std::string names;
-  for (const auto& [place, key] : line_keys(read_campaign(campaign))) names += (names.empty() ? "" : ", ") + key;
-  return names;
+  return {{last_part_of(path), {}, {}, {RunDirectory{path}}}};
 }
 
 RunCurve curve_of(const RunGroup& group, bool pictured) {

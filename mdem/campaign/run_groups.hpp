@@ -12,23 +12,21 @@ namespace ropewalk {
 
 struct RunGroup {
   std::string name;
-  // Of a campaign: the values of its keys but the first that varies, "20, 0.05". Runs of one line differ in that
-  // one.
-  std::string line = {};
+  // Of a campaign: the keys that vary, but the first of them, and their values: "tube_length_nm, per_nm" and "20,
+  // 0.05". Groups with the same values are points of one line of a figure.
+  std::string line_keys = {}, line = {};
   std::vector<RunDirectory> runs;
 };
 
 // The run or the campaign in this directory. Throws InputError where it is neither.
 std::vector<RunGroup> groups_in(const std::string& directory);
-// The keys behind the values of RunGroup::line, "tube_length_nm, per_nm"; empty where there are none.
-std::string line_keys_in(const std::string& directory);
 // The name of a directory.
 std::string last_part_of(const std::string& path);
 
 // The mean of its logs; `pictured`: with the last frame of the first run.
 RunCurve curve_of(const RunGroup& group, bool pictured);
 
-// What a testing machine tells of its runs. Throws InputError where nothing pulls in one.
+// The tensile test of each of its runs. Throws InputError for a run without a tension.
 TensileGroup tensile_of(const RunGroup& group);
 
 }  // namespace ropewalk

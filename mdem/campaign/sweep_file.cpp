@@ -281,14 +281,14 @@ void write_scene(const Sweep& s, SweepPoint& p) {
     set(k);
     keep_free_length(s, before, leading_number(p.values[k]).value_or(0), p.text);
   }
-  // What a plan promises holds for the scene that was planned, with any seed.
+  // The promise of a plan holds for the planned scene with any seed, and for no other scene.
   if (expectations_of(s.scene_text).errors.empty()) return;
-  for (std::size_t k = 0; k < axes.size(); ++k)
-    if (axes[k]->key != seed_key &&
-        with_value(s.scene_text, axes[k]->key, p.values[k], s.scene_path) != s.scene_text) {
-      p.text = without_promises(p.text);
-      return;
-    }
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    const std::string& key = axes[k]->key;
+    if (key == seed_key || with_value(s.scene_text, key, p.values[k], s.scene_path) == s.scene_text) continue;
+    p.text = without_promises(p.text);
+    return;
+  }
 }
 
 // A wrong scene: named by the point, since it is in no file yet.

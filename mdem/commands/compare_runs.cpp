@@ -26,61 +26,77 @@ ReferenceLevel level_of(const std::string& text) {
                    "write it like 0.45:\"measured\"");
 }
 
-}  // namespace
+void write(const std::string& path, const std::string& text) {
+  write_file_atomically(path, text);
+  fmt::print("{} written\n", path);
+}
 
-int compare_runs(const CompareArguments& a) {
+std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictured) {
+  std::vector<RunCurve> curves;
+  for (const RunGroup& group : groups)
+    curves.push_back(curve_of(group, pictured && groups.size() <= most_pictured));
+  return curves;
+}
+
+// The chart of a --svg; `of`: the option that chose what is drawn.
+std::string drawn(const std::string& svg, const char* of) {
+  if (svg.empty())
+    throw InputError({"", 0, of}, "has no two values to draw", "choose another column or more of the runs");
+  return svg;
+}
+
+struct Wanted {
+  std::string page, title;  // page: HTML; empty: the files of --svg and --csv instead
+};
+
+void compare_pulls(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& groups) {
+  if (!a.y.empty() || !a.levels.empty() || a.log)
+    throw InputError({"", 0, "--tensile"}, "draws strength alone", "leave out --y, --level and --log");
+  const std::string x = a.x.empty() ? "beta_deg" : a.x;
+  std::vector<TensileGroup> tests;
+  for (const RunGroup& group : groups) tests.push_back(tensile_of(group));
+  if (!a.svg.empty()) write(a.svg, drawn(tensile_svg(tests, x), "--x"));
+  if (!a.csv.empty()) write(a.csv, tensile_csv(tests, x));
+  if (wanted.page.empty()) return;
+  const std::vector<RunCurve> curves = curves_of(groups, true);
   RunsFigure figure;
-  figure.x = !a.x.empty() ? a.x : a.tensile ? "beta_deg" : "time_ps";
+  figure.x = "ends_strain";
+  figure.y = {"stress_GPa"};
+  for (const char* column : {"links_broken", "bonds_broken"})
+    if (std::any_of(curves.begin(), curves.end(), [&](const RunCurve& c) { return c.log.back()[column] > 0; }))
+      figure.y.push_back(column);
+  Figures figures;
+  const std::string strength = tensile_part(tests, x, groups.front().line_keys, figures);
+  write(wanted.page, runs_page(wanted.title, curves, figure, figures, strength));
+}
+
+void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& groups) {
+  RunsFigure figure;
+  if (!a.x.empty()) figure.x = a.x;
   figure.y = a.y;
   figure.y_decades = a.log;
   for (const std::string& level : a.levels) figure.levels.push_back(level_of(level));
-  column_of_log(figure.x, {"", 0, "--x"});
+  const std::vector<RunCurve> curves = curves_of(groups, !wanted.page.empty());
+  if (!a.svg.empty()) write(a.svg, drawn(runs_svg(curves, figure), "--y"));
+  if (!a.csv.empty()) write(a.csv, runs_csv(curves, figure));
+  if (!wanted.page.empty()) write(wanted.page, runs_page(wanted.title, curves, figure));
+}
+
+}  // namespace
+
+int compare_runs(const CompareArguments& a) {
+  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
   for (const std::string& column : a.y) column_of_log(column, {"", 0, "--y"});
-  if (a.tensile && !(a.y.empty() && a.levels.empty() && !a.log))
-    throw InputError({"", 0, "--tensile"}, "draws strength alone", "leave out --y, --level and --log");
-  const bool page = a.svg.empty() && a.csv.empty();
-  const std::string html = a.page.empty() ? "compare.html" : a.page;
-  if (page) refuse_existing(html, "--page", a.force);
-  if (!a.svg.empty()) refuse_existing(a.svg, "--svg", a.force);
-  if (!a.csv.empty()) refuse_existing(a.csv, "--csv", a.force);
+  Wanted wanted;
+  if (a.svg.empty() && a.csv.empty()) wanted.page = a.page.empty() ? "compare.html" : a.page;
+  for (const auto& [file, option] :
+       {std::pair(wanted.page, "--page"), std::pair(a.svg, "--svg"), std::pair(a.csv, "--csv")})
+    if (!file.empty()) refuse_existing(file, option, a.force);
   std::vector<RunGroup> groups;
-  std::string lines;
-  for (const std::string& path : a.names) {
+  for (const std::string& path : a.names)
     for (RunGroup& group : groups_in(path)) groups.push_back(std::move(group));
-    if (lines.empty()) lines = line_keys_in(path);
-  }
-  const auto write = [](const std::string& path, const std::string& text) {
-    write_file_atomically(path, text);
-    fmt::print("{} written\n", path);
-  };
-  std::vector<TensileGroup> tests;
-  if (a.tensile)
-    for (const RunGroup& group : groups) tests.push_back(tensile_of(group));
-  std::vector<RunCurve> curves;
-  if (page || !a.tensile)
-    for (const RunGroup& group : groups) curves.push_back(curve_of(group, page && groups.size() <= most_pictured));
-  if (!a.svg.empty()) {
-    const std::string svg = a.tensile ? tensile_svg(tests, figure.x) : runs_svg(curves, figure);
-    if (svg.empty())
-      throw InputError({"", 0, a.tensile ? "--x" : "--y"}, "has no two values to draw",
-                       "choose another column or more of the runs");
-    write(a.svg, svg);
-  }
-  if (!a.csv.empty()) write(a.csv, a.tensile ? tensile_csv(tests, figure.x) : runs_csv(curves, figure));
-  if (!page) return 0;
-  const std::string title =
-      a.names.size() == 1 ? last_part_of(a.names.front()) : fmt::format("{} runs", curves.size());
-  Figures figures;
-  std::string first;
-  if (a.tensile) {
-    first = tensile_part(tests, figure.x, lines, figures);
-    figure.x = "ends_strain";
-    figure.y = {"stress_GPa"};
-    for (const char* column : {"links_broken", "bonds_broken"})
-      if (std::any_of(curves.begin(), curves.end(), [&](const RunCurve& c) { return c.log.back()[column] > 0; }))
-        figure.y.push_back(column);
-  }
-  write(html, runs_page(title, curves, figure, figures, first));
+  wanted.title = a.names.size() == 1 ? last_part_of(a.names.front()) : fmt::format("{} runs", groups.size());
+  (a.tensile ? compare_pulls : compare_curves)(a, wanted, groups);
   return 0;
 }
 

@@ -141,6 +141,14 @@ Pierced pierced_at(const Topology& topology, const State& state, int section) {
   return out;
 }
 
+// nm, of the tubes in a section. `of` has tubes where `topology` has strands.
+std::vector<double> radii_at(const Topology& of, const Topology& topology, int section) {
+  std::vector<double> radii;
+  for (int t = 0; t < topology.tubes(); ++t)
+    radii.push_back(of.type_of(of.tube_of(topology.tube_begin[t] + section)).radius);
+  return radii;
+}
+
 // Triangles between the tubes of each rope.
 std::vector<Triangle> triangles_of_ropes(const Topology& topology, const std::vector<Eigen::Vector2d>& points) {
   std::vector<Triangle> triangles;
@@ -154,8 +162,9 @@ std::vector<Triangle> triangles_of_ropes(const Topology& topology, const std::ve
   return triangles;
 }
 
-// Of the circle about three tubes, over their spacing: in a packed rope 0.58, in a square 0.71, about a missing
-// tube or in an open notch of the surface 1.
+// Largest radius, in spacings, of the circle through the axes of three tubes that enclose no place for a tube. The
+// radius is 0.58 in a packed rope, 0.71 between four tubes in a square, and 1 about a missing tube or in a notch of
+// the surface.
 constexpr double widest_hole = 0.85;
 
 double circumradius(const Triangle& t, const std::vector<Eigen::Vector2d>& points) {
@@ -182,8 +191,7 @@ RopeShells rope_shells(const Topology& of, const State& reference, double neighb
   const double spacing = neighbour_radius > 0 ? neighbour_radius / between_shells
                                               : median_spacing(tubes, tube_distances(topology, reference, section));
   const std::vector<Eigen::Vector2d> points = pierced_at(topology, reference, section).in_plane();
-  std::vector<double> radii;
-  for (int t = 0; t < tubes; ++t) radii.push_back(of.type_of(of.tube_of(topology.tube_begin[t] + section)).radius);
+  const std::vector<double> radii = radii_at(of, topology, section);
   const double gap = spacing - 2 * *std::max_element(radii.begin(), radii.end());
   std::vector<double> around(static_cast<std::size_t>(tubes), 0);
   for (const Triangle& t : triangles_of_ropes(topology, points)) {
@@ -213,10 +221,10 @@ CrossSection cross_section(const Topology& of, const State& state, const RopeShe
 
   const Pierced pierced = pierced_at(topology, state, section);
   out.points = pierced.in_plane();
+  out.radii = radii_at(of, topology, section);
   std::vector<Vector3> tangents;
   for (int t = 0; t < tubes; ++t) {
     tangents.push_back(pierced.plane.local(along(tube_tangent(topology, state, t, section), pierced.plane.normal)));
-    out.radii.push_back(of.type_of(of.tube_of(topology.tube_begin[t] + section)).radius);
   }
   const std::vector<Triangle> triangles = triangles_of_ropes(topology, out.points);
   out.delaunay = edge_counts(triangles, tubes);

@@ -42,7 +42,7 @@ struct RunsFigure {
   bool y_decades = false;
 };
 
-// `first`: a part of the page that stands before all others, with its figures.
+// `first`: HTML that the page begins with, behind its title. `figures` has counted the figures in this HTML.
 // Throws std::invalid_argument where a column does not exist.
 std::string runs_page(const std::string& title, const std::vector<RunCurve>& runs, const RunsFigure& figure,
                       Figures figures = {}, const std::string& first = "");

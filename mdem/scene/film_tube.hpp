@@ -23,12 +23,12 @@ struct FilmTube {
 // lay level: 0 where they cross.
 double projected_distance2(const FilmTube& a, const FilmTube& b, double length);
 
-// Gives a tube the height and the tilt at which its middle is as low as it can be on top of the others: no axis of
-// one of them is closer to its own than the spacing (nm), and both its ends are at z = 0 or above. It then rests on
-// two supports, one on either side of its middle: axes at the spacing, or the plane under an end. There are two
-// exceptions, both rare among long tubes. On a tube that runs nearly along it, it may rest on one support, under
-// its middle; and an end that has slipped past the side of another tube stays beside it, at the spacing in
-// projection. Tubes are rigid, of one length (nm) and round at their ends; place and angle stay as they are.
+// Lets a tube down on the others: sets its height and its tilt so that its middle is as low as possible. The axis
+// of the tube stays at least a spacing (nm) away from the axes of the others, and both ends of the tube stay at z =
+// 0 or above. The tube then rests on two supports, one on either side of its middle. A support is another tube at
+// the spacing, or the plane under an end. Among short tubes there are two exceptions: a tube may balance on one
+// tube that is nearly parallel to it, and an end may hang beside the side of another tube. Tubes are rigid, of one
+// length (nm), with round ends. Place and angle of the tube do not change.
 void let_down(FilmTube& tube, const std::vector<FilmTube>& others, double length, double spacing);
 
 }  // namespace ropewalk

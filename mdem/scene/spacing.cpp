@@ -8,14 +8,20 @@
 namespace ropewalk {
 namespace {
 
-// The largest of all pairs of tube types, by this function of the law.
-double largest_distance(const Scene& scene, const ContactLaw* law,
-                        double (ContactLaw::*distance)(TypePair, double) const) {
-  if (!law) return 2 * largest_radius(scene) + graphite_gap;
+using Distance = double (ContactLaw::*)(TypePair, double) const;
+
+double distance_of(const Scene& scene, const ContactLaw* law, TypePair types, Distance distance) {
+  if (law) return (law->*distance)(types, scene.element_length);
+  const auto radius = [&](int type) { return scene.sets[static_cast<std::size_t>(type)].radius; };
+  return radius(types.i) + radius(types.j) + graphite_gap;
+}
+
+// Of all pairs of tube types.
+double largest_distance(const Scene& scene, const ContactLaw* law, Distance distance) {
   double largest = 0;
-  for (int i = 0; i < static_cast<int>(scene.sets.size()); ++i)
-    for (int j = 0; j < static_cast<int>(scene.sets.size()); ++j)
-      largest = std::max(largest, ((*law).*distance)({i, j}, scene.element_length));
+  const int types = static_cast<int>(scene.sets.size());
+  for (int i = 0; i < types; ++i)
+    for (int j = 0; j < types; ++j) largest = std::max(largest, distance_of(scene, law, {i, j}, distance));
   return largest;
 }
 
@@ -45,9 +51,7 @@ double parallel_spacing(const Scene& scene, const ContactLaw* law) {
 }
 
 double pair_spacing(const Scene& scene, const ContactLaw* law, TypePair types) {
-  if (law) return law->parallel_distance(types, scene.element_length);
-  return scene.sets[static_cast<std::size_t>(types.i)].radius +
-         scene.sets[static_cast<std::size_t>(types.j)].radius + graphite_gap;
+  return distance_of(scene, law, types, &ContactLaw::parallel_distance);
 }
 
 double coaxial_gap(const Scene& scene) {

@@ -14,7 +14,7 @@ double largest_radius(const Scene& scene);  // nm, of the tube types
 // The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that
 // of their walls in graphite. Of several tube types, the largest.
 double parallel_spacing(const Scene& scene, const ContactLaw* law);
-// Of tubes of these two types alone.
+// The distance of two parallel tubes of these types at which they bind best.
 double pair_spacing(const Scene& scene, const ContactLaw* law, TypePair types);
 double crossed_spacing(const Scene& scene);
 // The gap (nm) between the ends of two tubes in line at which these do not push each other; the largest of all

@@ -460,7 +460,7 @@ TEST_F(Campaign, CompareDrawsRunsAndEnsembles) {
   EXPECT_EQ(run("compare s cnt-10-10-tersoff").code, 2);
 }
 
-// What a plan promises holds for the scene that was planned, with any seed.
+// The promise of a plan holds for the planned scene with any seed. The other points keep the planned model alone.
 TEST_F(Campaign, PointsOfAPlannedSceneKeepItsModel) {
   spit(dir / "planned.toml",
        "# Planned for an error of 2 % by pilots of the whole scene: default.\n# plan: asked 0.02\n"

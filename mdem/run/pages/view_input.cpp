@@ -28,7 +28,8 @@ std::vector<Vector3> joints_of(const Topology& topology, const State& state) {
   return out;
 }
 
-// The same for tubes that were cut into these pieces later: both ends at a cut are the joint that is there now.
+// The joints of tubes that break into `pieces` later. Two pieces that `now` still has as one tube share their
+// joint.
 std::vector<Vector3> joints_of_pieces(const Topology& pieces, const Topology& now, const State& state) {
   const std::vector<Vector3> joints = joints_of(now, state);
   std::vector<Vector3> out;
@@ -128,7 +129,8 @@ ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared
   ViewInput in;
   in.name = scene.name;
   const StoredEvents events(dir.events(), p.topology);
-  // Tubes are drawn in the parts in which they end: before they break, these meet.
+  // The page draws each tube in the parts into which it has broken by the end of the run. Until a bond breaks, the
+  // parts on both sides of it share a joint.
   const Topology pieces = events.tubes_at(std::numeric_limits<double>::infinity());
   in.tube_begin = pieces.tube_begin;
   for (int t = 0; t < pieces.tubes(); ++t) in.tube_radius.push_back(pieces.type_of(t).radius);
