@@ -80,7 +80,7 @@ class Drawing {
     moved_ = 0;
     const double width = (1 + skin) * largest_;
     const auto cell = [&](double at) { return static_cast<std::int64_t>(std::floor(at / width)); };
-    const auto key = [](std::int64_t column, std::int64_t row) { return (column << 32) ^ (row & 0xffffffff); };
+    const auto key = [](std::int64_t column, std::int64_t row) { return column * 4294967296 + row; };
     std::unordered_map<std::int64_t, std::vector<int>> cells;
     for (std::size_t i = 0; i < discs_.size(); ++i) {
       const std::int64_t column = cell(discs_[i].x), row = cell(discs_[i].y);
