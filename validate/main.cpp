@@ -81,6 +81,9 @@ void add_parametrize(CLI::App& app, Verbs& v) {
                    "Friction from atoms: of each tube beside its like, of all pairs of tubes, or none; some minutes a pair")
       ->check(CLI::IsMember({"like", "all", "none"}))
       ->capture_default_str();
+  verb->add_option("--tier", a.tier, "Cases to run: full, or quick: without ropes and bundles")
+      ->check(CLI::IsMember({"full", "quick"}))
+      ->capture_default_str();
   verb->add_option("--budget", a.budget, "Minutes that the references of one tube may take [default: any]")
       ->check(number_within(Bounds::positive()));
   verb->add_option("-j,--jobs", a.jobs, "Processes at a time [default: one for each core]")->check(whole_number(1));

@@ -130,7 +130,7 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   spit(dir / "p/friction-5-5-5-5-tersoff.toml",
        std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/friction/friction-5-5-5-5-tersoff.toml"),
                           std::regex("(set_[ab]_)hash +=[^\n]*"), "$1" + own));
-  const Outcome o = run("parametrize 5,5 --out p --budget 0.1");
+  const Outcome o = run("parametrize 5,5 --tier quick --out p --budget 0.1");
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_NE(o.err.find("set kept"), std::string::npos) << o.err;
   EXPECT_NE(o.err.find("friction-5-5-5-5-tersoff: kept"), std::string::npos) << o.err;
@@ -142,9 +142,10 @@ TEST_F(Validate, ParametrizeGoesOnWithWhatIsThere) {
   EXPECT_NE(page.find("What the set is for"), std::string::npos);
   EXPECT_NE(page.find("(5,5) beside (5,5)"), std::string::npos);
   EXPECT_NE(page.find("--budget 0.1"), std::string::npos);
+  EXPECT_NE(page.find("Quick cases alone (--tier quick)"), std::string::npos);
   const std::string table = slurp(dir / "p/tubes.csv");
   EXPECT_NE(table.find("cnt-5-5-tersoff,5,5,tersoff,30.0000,"), std::string::npos) << table;
-  EXPECT_NE(table.find(",holds,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",holds quick,"), std::string::npos) << table;
 }
 
 // Counting leaves earlier measurements unchanged.

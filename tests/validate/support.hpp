@@ -26,6 +26,7 @@ inline CaseResult run(const Case& c, const Fault& fault = {}) {
   CaseContext context = stored_context();
   for (const std::string& name : c.sets) context.sets.push_back(shipped(name));
   context.fault = fault;
+  context.brief = !fault.name().empty();
   return run_case(c, context);
 }
 

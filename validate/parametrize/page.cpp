@@ -103,7 +103,8 @@ std::string times(const ParametrizedTube& t) {
   for (const Outcome& o : t.outcomes)
     if (find_case(o.name).group == Case::Group::atoms) lammps += o.result.seconds;
   return fmt::format(
-      "Processor time: calibration {:.0f} s; references of atoms and their cases {:.0f} s; other cases {:.0f} s.",
+      "{}Processor time: calibration {:.0f} s; references of atoms and their cases {:.0f} s; other cases {:.0f} s.",
+      t.tier == "quick" ? "Quick cases alone (--tier quick): no ropes and no bundles were compared. " : "",
       t.calibration_seconds, lammps, t.validation_seconds() - lammps);
 }
 
@@ -218,7 +219,7 @@ std::string overview_row(const ParametrizedTube& t) {
          cell("tube.radius") + cell("bond.EA") + cell("bond.EI") + cell("bond.GJ") +
          cell("atomistic.natural_twist") + cell("contact.line.pair_spacing") + cell("contact.line.pair_energy") +
          fmt::format(
-             "<td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n", t.holds() ? "✓ holds" : "✗ misses",
+             "<td>{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n", (t.holds() ? "✓ " : "✗ ") + t.verdict(),
              rope ? number_text(100 * std::fabs(rope->difference()), 2) + " %" : "", escape_markup(t.grade()));
 }
 
@@ -323,7 +324,7 @@ std::string tubes_csv(const std::vector<ParametrizedTube>& tubes) {
     }
     const Check* rope = worst_rope(t);
     text += fmt::format(",{:.4g},\"{}\",{},{},{:.1f},{:.1f}\n", registry_deviation(t.set), t.grade(),
-                        t.holds() ? "holds" : "misses", rope ? fmt::format("{:.4g}", rope->difference()) : "",
+                        t.verdict(), rope ? fmt::format("{:.4g}", rope->difference()) : "",
                         t.calibration_seconds, t.validation_seconds());
   }
   return text;

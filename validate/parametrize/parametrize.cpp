@@ -249,6 +249,7 @@ ParametrizedTube validated(const Place& place, const ParametrizeArguments& a, in
   v.parameters = place.file(".toml");
   v.out = place.file("-validation");
   v.atoms = true;
+  v.tier = tube.tier = a.tier;
   v.budget = a.budget;
   v.jobs = jobs;
   v.again = a.again;
@@ -277,7 +278,7 @@ void print_line(const ParametrizedTube& t) {
   }
   const Check* rope = worst_rope(t);
   fmt::print("{:<24} {:<7} EA {:.4g} nN, EI {:.4g} nN nm^2, GJ {:.4g} nN nm^2, pair {:.4g} eV/nm{}\n", t.name,
-             t.holds() ? "holds" : "MISSES", t.set.bond.stretch * units::eV_in_nN_nm,
+             t.verdict(), t.set.bond.stretch * units::eV_in_nN_nm,
              t.set.bond.bend * units::eV_in_nN_nm, t.set.bond.twist * units::eV_in_nN_nm,
              t.set.line ? t.set.line->pair_energy : 0,
              rope ? fmt::format(", ropes within {:.1f} %", 100 * std::fabs(rope->difference())) : "");
@@ -293,6 +294,10 @@ bool ParametrizedTube::holds() const {
   return error.empty() && std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
            return o.verdict() == Outcome::Verdict::holds || o.verdict() == Outcome::Verdict::not_applicable;
          });
+}
+
+std::string ParametrizedTube::verdict() const {
+  return std::string(holds() ? "holds" : "misses") + (tier == "quick" ? " quick" : "");
 }
 
 std::string ParametrizedTube::grade() const {

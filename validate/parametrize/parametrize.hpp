@@ -19,6 +19,7 @@ struct ParametrizeArguments {
   std::vector<std::string> potentials = {"tersoff"};
   std::string out = "parametrized";
   std::string friction = "like";  // pairs to measure: each tube beside its "like", "all" pairs, "none"
+  std::string tier = "full";       // as of `validate run`
   double budget = 0;  // minutes of each tube's references; 0: any
   int jobs = 0;       // processes at a time; 0: one for each core
   bool again = false;
@@ -37,9 +38,11 @@ struct ParametrizedTube {
   std::vector<PairFriction> frictions;  // of this tube and another one
   std::string no_friction;              // why some are missing; empty: none is
   std::vector<Outcome> outcomes;
+  std::string tier = "full";       // of the cases
   double calibration_seconds = 0;  // wall time
 
   bool holds() const;
+  std::string verdict() const;        // "holds" or "misses", with "quick" where only these cases were run
   std::string grade() const;          // in words, with the cases that miss
   double validation_seconds() const;  // sum over the cases, LAMMPS included
 };

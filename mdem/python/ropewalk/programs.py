@@ -433,6 +433,7 @@ def parametrize(
     out: str | os.PathLike[str] = "parametrized",
     *,
     potentials: Sequence[str] = ("tersoff",),
+    tier: str = "full",
     budget_min: Optional[float] = None,
     jobs: Optional[int] = None,
     again: bool = False,
@@ -444,12 +445,13 @@ def parametrize(
         chiralities: (n, m) of each tube (no unit)
         out: directory of sets, atoms and reports, with report.html
         potentials: "tersoff", "airebo", "rebo", "lcbop" (no unit)
+        tier: "full", or "quick": cases without ropes and bundles (no unit)
         budget_min: that the references of one tube may take, min (60 s); None: any
         jobs: processes at a time; None: one for each core (no unit)
         again: makes sets and results anew; references of atoms are kept
     """
     _call(["parametrize", *(f"{n},{m}" for n, m in chiralities), f"--out={os.fspath(out)}", "--quiet",
-           f"--potential={','.join(potentials)}", *_options(budget=budget_min, jobs=jobs, again=again)])
+           f"--potential={','.join(potentials)}", *_options(tier=tier, budget=budget_min, jobs=jobs, again=again)])
     names = [f"cnt-{n}-{m}-{potential}.toml" for n, m in chiralities for potential in potentials]
     return [ParameterSet(os.path.join(os.fspath(out), name)) for name in names]
 

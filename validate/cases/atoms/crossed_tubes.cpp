@@ -237,7 +237,6 @@ const RegisteredCase registered([] {
   c.name = "crossed-tubes";
   c.group = Case::Group::atoms;
   c.order = 60;
-  c.tier = Case::Tier::full;
   c.tables = {"crossed-tubes"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.6 * set.atoms_per_length; };
   c.title = "Two crossed tubes: energy and torque against angle";

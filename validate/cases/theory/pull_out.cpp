@@ -86,6 +86,7 @@ const RegisteredCase registered([] {
   c.name = "pull-out";
   c.group = Case::Group::theory;
   c.order = 170;
+  c.tier = Case::Tier::full;
   c.law = Case::Law::none;
   c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
   c.title = "A tube drawn out of a rope of seven";

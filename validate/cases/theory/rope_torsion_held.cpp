@@ -15,8 +15,8 @@ const RegisteredCase registered([] {
       "brought to rest. The outermost tubes lean by 0.5, 5, 10 and 15 degrees.";
   c.run = [](const CaseContext& context) { return run_rope_torsion(context, RopeInMachine::Length::held); };
   c.turns_red = {{wrong_stiffnesses(1.1),
-                  {"torque per tube, 7 tubes of (10,10), 0.5°", "tension per tube, 91 tubes of (10,10), 10°",
-                   "specific energy, 91 tubes of (10,10)"}}};
+                  {"torque per tube, 7 tubes of (10,10), 0.5°", "tension per tube, 37 tubes of (10,10), 10°",
+                   "specific energy, 37 tubes of (10,10)"}}};
   return c;
 });
 
