@@ -172,46 +172,52 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
   return out;
 }
 
-double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube) {
+TubePressures::TubePressures(const Topology& topology, const State& state, const ContactLaw& law, double cell)
+    : topology_(topology), state_(state), law_(law), cell_(cell), grid_(state.position, law.cutoff()) {}
+
+double TubePressures::of(int tube) const {
   constexpr int most = 8;  // elements
-  const int n = topology.length_of(tube), count = std::min(most, n - 2 * (n / 3)), from = (n - count) / 2,
-            to = from + count;
-  const double reach2 = law.cutoff() * law.cutoff();
-  double virial = 0;
+  const int n = topology_.length_of(tube), count = std::min(most, n - 2 * (n / 3)), from = (n - count) / 2;
   // Tubes in line with it do not touch its side.
   int first = tube, last = tube;
-  while (!topology.begins_strand(first)) --first;
-  while (!topology.ends_strand(last)) ++last;
-  for (int other = 0; other < topology.tubes(); ++other) {
-    if (first <= other && other <= last) continue;
-    const TypePair types{topology.tube_type[tube], topology.tube_type[other]};
-    for (int k = from; k < to; ++k) {
-      const auto i = static_cast<std::size_t>(topology.tube_begin[tube] + k);
-      const Vector3 x = state.position[i], t = axis_of(state.orientation[i]);
-      for (int e = topology.tube_begin[other]; e < topology.tube_begin[other + 1]; ++e) {
-        const auto j = static_cast<std::size_t>(e);
-        const Vector3 d = state.position[j] - x;
-        if (!(d.squaredNorm() < reach2)) continue;
-        const Vector3 force = law.force(types, d, t, axis_of(state.orientation[j])).force_j;
-        virial += force.dot(d) - force.dot(t) * d.dot(t);
-      }
+  while (!topology_.begins_strand(first)) --first;
+  while (!topology_.ends_strand(last)) ++last;
+  const int in_line_from = topology_.tube_begin[static_cast<std::size_t>(first)],
+            in_line_to = topology_.tube_begin[static_cast<std::size_t>(last) + 1];
+  double virial = 0;
+  std::vector<int> near;
+  for (int i = topology_.tube_begin[static_cast<std::size_t>(tube)] + from, to = i + count; i < to; ++i) {
+    const std::size_t found = grid_.find(i, -1, near);
+    std::sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(found));
+    const Vector3 x = state_.position[static_cast<std::size_t>(i)],
+                  t = axis_of(state_.orientation[static_cast<std::size_t>(i)]);
+    for (std::size_t k = 0; k < found; ++k) {
+      if (in_line_from <= near[k] && near[k] < in_line_to) continue;
+      const auto j = static_cast<std::size_t>(near[k]);
+      const TypePair types{topology_.tube_type[static_cast<std::size_t>(tube)],
+                           topology_.tube_type[static_cast<std::size_t>(topology_.tube_of(near[k]))]};
+      const Vector3 d = state_.position[j] - x,
+                    force = law_.force(types, d, t, axis_of(state_.orientation[j])).force_j;
+      virial += force.dot(d) - force.dot(t) * d.dot(t);
     }
   }
-  return virial / (4 * cell * count * topology.type_of(tube).element_length);
+  return virial / (4 * cell_ * count * topology_.type_of(tube).element_length);
 }
 
 std::vector<double> tube_pressures(const Topology& topology, const State& state,
                                    const LoadingReference& reference) {
   std::vector<double> out(static_cast<std::size_t>(topology.tubes()));
+  const TubePressures pressures(topology, state, *reference.law, reference.cell);
 #pragma omp parallel for schedule(dynamic)
-  for (int t = 0; t < topology.tubes(); ++t)
-    out[static_cast<std::size_t>(t)] = tube_pressure(topology, state, *reference.law, reference.cell, t);
+  for (int t = 0; t < topology.tubes(); ++t) out[static_cast<std::size_t>(t)] = pressures.of(t);
   return out;
 }
 
 std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& state,
                                        const LoadingReference& reference) {
   std::vector<TubeLoading> out(static_cast<std::size_t>(topology.tubes()));
+  const std::vector<double> pressures =
+      reference.law && reference.cell > 0 ? tube_pressures(topology, state, reference) : std::vector<double>();
 #pragma omp parallel for schedule(dynamic)
   for (int t = 0; t < topology.tubes(); ++t) {
     TubeLoading& tube = out[static_cast<std::size_t>(t)];
@@ -221,8 +227,7 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
       if (std::fabs(pull) > std::fabs(tube.most_tension)) tube.most_tension = pull;
     tube.twist = twist_of(topology, state, t);
     tube.curvature = largest_curvature(topology, state, t);
-    if (reference.law && reference.cell > 0)
-      tube.pressure = tube_pressure(topology, state, *reference.law, reference.cell, t);
+    if (!pressures.empty()) tube.pressure = pressures[static_cast<std::size_t>(t)];
   }
   if (!knows_slip(topology, reference))
     for (TubeLoading& tube : out) tube.slip = none;
@@ -263,10 +268,10 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   out.core_pressure = none;
   if (reference.law && !reference.core.empty() && reference.cell > 0) {
     out.core_pressure = 0;
+    const TubePressures pressures(topology, state, *reference.law, reference.cell);
     // Of the tubes in the middle of these strands.
     for (const int s : reference.core)
-      out.core_pressure += tube_pressure(topology, state, *reference.law, reference.cell,
-                                         topology.tube_of(strands.tube_begin[s] + strands.length_of(s) / 2)) /
+      out.core_pressure += pressures.of(topology.tube_of(strands.tube_begin[s] + strands.length_of(s) / 2)) /
                            static_cast<double>(reference.core.size());
   }
   return out;

@@ -9,6 +9,7 @@
 #include "observe/observe.hpp"
 #include "sim/contact/contact_law.hpp"
 #include "sim/dynamics/gauges.hpp"
+#include "sim/neighbours/cell_grid.hpp"
 
 namespace ropewalk {
 
@@ -67,8 +68,20 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
 // Only the components across the tube enter. The sum runs over up to eight elements in the middle of the tube, L is
 // their length, and A is the area of a tube's cell in the cross-section. The pressure of a straight rope at rest is
 // near zero, because the attraction of second neighbours balances the repulsion of the first ones.
-double tube_pressure(const Topology& topology, const State& state, const ContactLaw& law, double cell, int tube);
-// The pressure on every tube, eV/nm^3.
+class TubePressures {
+ public:
+  // All must outlive it. cell: A, nm^2.
+  TubePressures(const Topology& topology, const State& state, const ContactLaw& law, double cell);
+  double of(int tube) const;
+
+ private:
+  const Topology& topology_;
+  const State& state_;
+  const ContactLaw& law_;
+  double cell_;
+  CellGrid grid_;
+};
+// The pressure on every tube.
 std::vector<double> tube_pressures(const Topology& topology, const State& state, const LoadingReference& reference);
 
 }  // namespace ropewalk
