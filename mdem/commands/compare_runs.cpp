@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "campaign/campaign.hpp"
 #include "campaign/run_groups.hpp"
 #include "commands/commands.hpp"
 #include "io/files.hpp"
@@ -49,10 +50,32 @@ struct Wanted {
   std::string page, title;  // page: HTML; empty: the files of --svg and --csv instead
 };
 
-void compare_pulls(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& groups) {
+// What a run that goes on or has failed bore so far is no strength.
+std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string& where) {
+  std::size_t all = 0, left = 0;
+  for (RunGroup& group : groups) {
+    all += group.runs.size();
+    const auto goes_on = [](const RunDirectory& run) {
+      return progress_of(run).stage != PointProgress::Stage::ended;
+    };
+    group.runs.erase(std::remove_if(group.runs.begin(), group.runs.end(), goes_on), group.runs.end());
+    left += group.runs.size();
+  }
+  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const RunGroup& g) { return g.runs.empty(); }),
+               groups.end());
+  if (groups.empty())
+    throw InputError({where, 0, ""}, "has no run that has ended",
+                     "go on with `ropewalk sweep` or `ropewalk resume`");
+  if (left < all)
+    fmt::print(stderr, "note: {} of {} runs have not come to their end and are left out.\n", all - left, all);
+  return groups;
+}
+
+void compare_pulls(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& with_others) {
   if (!a.y.empty() || !a.levels.empty() || a.log)
     throw InputError({"", 0, "--tensile"}, "draws strength alone", "leave out --y, --level and --log");
   const std::string x = a.x.empty() ? "beta_deg" : a.x;
+  const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<TensileGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(tensile_of(group));
   if (!a.svg.empty()) write(a.svg, drawn(tensile_svg(tests, x), "--x"));

@@ -6,6 +6,7 @@
 
 #include "plan/features.hpp"
 #include "plan/sliding_rope.hpp"
+#include "scene/loads/periodic.hpp"
 #include "scene/loads/twist.hpp"
 #include "scene/watch.hpp"
 
@@ -29,6 +30,40 @@ std::string gentle_ramp(const Scene& scene, double part) {
   if (!(ramp.rate > 0)) return "ramp the moment";
   return fmt::format("a twist.rate_nN_nm_per_ps of {:.2g} would be gentle",
                      ramp.rate * std::sqrt(part) / units::nN_nm);
+}
+
+// A turn of one end of a rope against the other that is prescribed, or of the two ends of a slice.
+struct Turn {
+  double angle = 0, rate = 0, length = 0;  // rad, rad/ps, nm
+  bool length_held = false;
+};
+
+std::optional<Turn> turn_of(const Scene& scene, const Prepared& p) {
+  Turn turn;
+  if (const auto slices = scene.drives_of<PeriodicDrive>(); !slices.empty()) {
+    const PeriodicLoad& load = slices.front()->load;
+    turn.length = p.topology.period;
+    turn.length_held = load.tension.empty();
+    for (std::size_t k = 0; k < load.twist.size(); ++k) {
+      turn.angle = std::max(turn.angle, std::fabs(load.twist[k].value) * turn.length);
+      if (k > 0 && load.twist[k].time > load.twist[k - 1].time)
+        turn.rate = std::max(turn.rate, std::fabs(load.twist[k].value - load.twist[k - 1].value) * turn.length /
+                                            (load.twist[k].time - load.twist[k - 1].time));
+    }
+  } else if (const SceneFeatures f = features_of(scene, p); f.between_clamps) {
+    turn = {f.turned, f.turning, f.length, f.length_held};
+  }
+  if (!(turn.angle > 0 && turn.rate > 0)) return std::nullopt;
+  return turn;
+}
+
+// By length: 1 where a strand is one tube.
+double part_of_strand(const Topology& topology, int tube) {
+  int first = tube, last = tube, elements = 0;
+  while (!topology.begins_strand(first)) --first;
+  while (!topology.ends_strand(last)) ++last;
+  for (int t = first; t <= last; ++t) elements += topology.length_of(t);
+  return static_cast<double>(topology.length_of(tube)) / elements;
 }
 
 }  // namespace
@@ -86,33 +121,41 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
 }
 
 std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
-  const SceneFeatures f = features_of(scene, p);
-  if (!(f.turned > 0 && f.turning > 0) || !f.between_clamps) return std::nullopt;
+  const std::optional<Turn> turn = turn_of(scene, p);
+  if (!turn) return std::nullopt;
   double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
     const double rho2 =
         Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
-    twist += type.bond.twist;
-    inertia += (type.mass * rho2 + type.inertia) / type.element_length;
-    stretch += type.bond.stretch;
-    second += type.bond.stretch * rho2;
-    fourth += type.bond.stretch * rho2 * rho2;
+    const double part = part_of_strand(p.topology, t);
+    twist += part * type.bond.twist;
+    inertia += part * (type.mass * rho2 + type.inertia) / type.element_length;
+    stretch += part * type.bond.stretch;
+    second += part * type.bond.stretch * rho2;
+    fourth += part * type.bond.stretch * rho2 * rho2;
   }
-  const double cubic = 0.5 * (f.length_held ? fourth : fourth - second * second / stretch);
-  const double phi = f.turned / f.length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
+  const double cubic = 0.5 * (turn->length_held ? fourth : fourth - second * second / stretch);
+  const double phi = turn->angle / turn->length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
   // The speed of rotation rises along the rope from zero at the held end to the whole rate at the turned one.
-  const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * f.turning * f.length : 0;
-  return QuasiStatic{f.length * std::sqrt(inertia / twist), f.turned / f.turning, drag / torque,
-                     0.5 * f.turning * std::sqrt(twist * inertia) / torque};
+  const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * turn->rate * turn->length : 0;
+  return QuasiStatic{p.topology.images > 0, turn->length * std::sqrt(inertia / twist), turn->angle / turn->rate,
+                     drag / torque, 0.5 * turn->rate * std::sqrt(twist * inertia) / torque};
 }
 
 std::string words_of(const QuasiStatic& q) {
   constexpr double enough = 0.05;
-  std::string text = fmt::format(
-      "Twist needs {:.3g} ps from end to end, and the turn lasts {:.3g} ps: torques are those of rest within "
-      "{:.2g} % at most, by which both ends differ from their mean",
-      q.travel, q.time, 100 * q.error);
+  const std::string percent = fmt::format(q.error < 0.1 ? "{:.2g}" : "{:.0f}", 100 * q.error);
+  std::string text =
+      q.slice
+          ? fmt::format(
+                "Twist enters the slice at its ends and needs {:.3g} ps to its middle, and the turn lasts {:.3g} "
+                "ps: torques are those of rest within {} % at most",
+                0.5 * q.travel, q.time, percent)
+          : fmt::format(
+                "Twist needs {:.3g} ps from end to end, and the turn lasts {:.3g} ps: torques are those of rest "
+                "within {} % at most, by which both ends differ from their mean",
+                q.travel, q.time, percent);
   if (q.error > enough)
     text += fmt::format("; for {:.2g} % turn in {:.3g} ps", 100 * enough, q.time * q.error / enough);
   text += ".";

@@ -525,6 +525,18 @@ TEST_F(Campaign, TheStrengthOfRopesOfFiniteTubes) {
   const auto still = run("compare still --tensile --csv still.csv");
   EXPECT_EQ(still.code, 2);
   EXPECT_NE(still.err.find("nothing pulls in it"), std::string::npos) << still.err;
+  // What a run that goes on has borne so far is no strength.
+  ASSERT_EQ(run("run rope.toml --out half --until 20 --quiet").code, 0);
+  std::string manifest = slurp(dir / "half/manifest.json");
+  const std::string finished = "\"finished\"";
+  ASSERT_NE(manifest.find(finished), std::string::npos) << manifest;
+  spit(dir / "half/manifest.json", manifest.replace(manifest.find(finished), finished.size(), "\"interrupted\""));
+  const auto half = run("compare half --tensile --csv half.csv");
+  EXPECT_EQ(half.code, 2);
+  EXPECT_NE(half.err.find("has no run that has ended"), std::string::npos) << half.err;
+  const auto both = run("compare half s --tensile --csv both.csv");
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_NE(both.err.find("runs have not come to their end"), std::string::npos) << both.err << both.out;
 }
 
 // Seven tubes, from both sides; the same command goes on, and a longer hold asks for another directory.

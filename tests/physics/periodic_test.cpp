@@ -325,6 +325,32 @@ TEST(PeriodicSlice, FrictionKeepsTheMomentum) {
   }
 }
 
+// However many images there are.
+TEST(PeriodicSlice, ASlipIsCountedOnce) {
+  const auto slips = [](int images) {
+    constexpr int own = 16;
+    Slice slice(
+        slice_text(7, own + 2 * images,
+                   fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 0]]\nimages = {}\n[damping]\n"
+                               "contact_viscosity_eV_ps_per_nm2 = 0\n[[friction]]\nstrength_pN_per_nm = 30\n"
+                               "spin_strength_pN_per_nm = 10\nend_strength_pN = 20\n"
+                               "drag_eV_ps_per_nm3 = 0.1\n[run]\nduration_ps = 1\n",
+                               images)));
+    EXPECT_EQ(slice.own, own);
+    for (int e = 0; e < slice.strand(); ++e)
+      slice.p.state.velocity.set(static_cast<std::size_t>(e), Vector3(0, 0, 0.1));
+    slice.load->place(slice.p.topology, slice.p.state);
+    Simulation s = start(slice.scene, slice.p);
+    s.steps(std::lround(10 / slice.p.time_step), true);
+    double sum = 0;
+    for (const TermAccount& a : s.term_accounts()) sum += a.events;
+    return sum;
+  };
+  const double few = slips(3), many = slips(9);
+  EXPECT_GT(few, 50);
+  EXPECT_NEAR(many, few, 0.02 * few);
+}
+
 // What has broken is known to a run that goes on, images included.
 TEST(PeriodicSlice, AYarnGoesOnFromACheckpoint) {
   Slice slice(yarn_text(linked_and_weak, "tension_nN = [[0, 0]]\nstrain = [[5, 0], [20, 0.08]]\n"));

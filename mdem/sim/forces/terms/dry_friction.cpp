@@ -206,6 +206,7 @@ class DryFrictionTerm : public ForceTerm {
     int type = 0;
     bool own = true, ends_tube = false;
     double length = 0, radius = 0;  // nm
+    int image = 0;                  // of a slice: 1 above it, -1 below it, 0 in it
   };
 
   // --- elements ---
@@ -225,9 +226,20 @@ class DryFrictionTerm : public ForceTerm {
             topology.owns(i),
             number == tube_begin_[of_scene] || number + 1 == tube_begin_[of_scene + 1],
             type.element_length,
-            type.radius};
+            type.radius,
+            image_of(topology, i)};
       }
     }
+  }
+  static int image_of(const Topology& topology, int i) {
+    if (topology.images == 0) return 0;
+    const int original = topology.original_of(i);
+    return original == i ? 0 : original < i ? 1 : -1;
+  }
+  // Once for a contact and its images in a slice: that of two of its elements, or of one and an image above it.
+  bool is_counted(const Contact& c) const {
+    const int of_a = element(c.a).image, of_b = element(c.b).image;
+    return (of_a == 0 && of_b >= 0) || (of_b == 0 && of_a > 0);
   }
   const Element& element(int place) const { return elements_[static_cast<std::size_t>(place)]; }
   // -1: this process does not have it. Elements rise with their numbers.
@@ -360,7 +372,7 @@ class DryFrictionTerm : public ForceTerm {
     }
     if (!element(c.a).own) return;
     all.happened.lost += lost;
-    all.happened.events += begins_to_slide;
+    all.happened.events += begins_to_slide && is_counted(c);
   }
 
   // To the element of b's tube that a faces now. The slips stay. False: there is none.
