@@ -40,19 +40,25 @@ class InputError : public std::runtime_error {
 // step, element and remedy; the state at that moment has been written by the time it reaches main.
 class NumericalError : public std::runtime_error {
  public:
-  NumericalError(long step, int element, const std::string& what, const std::string& remedy)
+  enum class ShorterSteps { may_help, cannot_help };
+
+  NumericalError(long step, int element, const std::string& what, const std::string& remedy,
+                 ShorterSteps shorter_steps = ShorterSteps::may_help)
       : std::runtime_error("step " + std::to_string(step) +
                            (element >= 0 ? ", element " + std::to_string(element) : std::string()) + ": " + what +
                            "; " + remedy),
         step_(step),
-        element_(element) {}
+        element_(element),
+        shorter_steps_(shorter_steps) {}
 
   long step() const { return step_; }
   int element() const { return element_; }
+  ShorterSteps shorter_steps() const { return shorter_steps_; }
 
  private:
   long step_;
   int element_;
+  ShorterSteps shorter_steps_;
 };
 
 }  // namespace ropewalk

@@ -45,7 +45,7 @@ bool DynamicsLoop::advance(const Turn& t) {
   try {
     run_.moving.simulation.steps(t.count, t.logged || t.marked);
   } catch (const NumericalError& e) {
-    if (!run_.way_back.go_back(e.what())) throw;
+    if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help || !run_.way_back.go_back(e.what())) throw;
     return false;
   }
   if ((t.marked || t.last) && !run_.way_back.is_sound() &&

@@ -419,6 +419,7 @@ TEST(PeriodicSlice, SaysWhereImagesReachNoFarther) {
     FAIL() << s.state().time;
   } catch (const NumericalError& e) {
     EXPECT_THAT(e.what(), HasSubstr("take more images: periodic.images = "));
+    EXPECT_EQ(e.shorter_steps(), NumericalError::ShorterSteps::cannot_help);
   }
 }
 

@@ -59,7 +59,8 @@ const KeyTable<PeriodicLoad>& periodic_table() {
       "whole rope",
       {Key::integer(
            "images", 1, 1000, &PeriodicLoad::images,
-           otherwise("4", "as many as the contact reaches; where tubes end inside, 5 nm and a tenth of a tube more"),
+           otherwise("4",
+                     "as many as the contact reaches; where tubes end inside, 5 nm and a tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
@@ -263,7 +264,8 @@ void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
           missing),
       fmt::format("take more images: periodic.images = {}",
                   // For slips of twice this size.
-                  2 * images + 1 - static_cast<int>(reach_ / topology.type_of(0).element_length)));
+                  2 * images + 1 - static_cast<int>(reach_ / topology.type_of(0).element_length)),
+      NumericalError::ShorterSteps::cannot_help);
 }
 
 // So that the drift with these velocities leads to where the image will be.
