@@ -486,14 +486,24 @@ std::vector<std::string> listed_verbs(const CLI::App& app) {
 // Help on the keys of a scene. verb_before_help() gives the help of verbs.
 void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
-  c->add_option("topic", v.help_topic, "scene, or a verb [default: the list of verbs]");
+  c->add_option(
+      "topic", v.help_topic,
+      "A verb; scene; a table of a scene, as links or [run]; or one of its keys [default: the list of verbs]");
   c->callback([&app, &v] {
     if (v.help_topic == "scene") {
       std::puts(scene_key_help().c_str());
       return;
     }
+    if (const std::string keys = scene_key_help(v.help_topic); !keys.empty()) {
+      std::fputs(keys.c_str(), stdout);
+      return;
+    }
     std::vector<std::string> topics = listed_verbs(app);
     topics.emplace_back("scene");
+    for (const SceneTable& t : scene_tables()) {
+      if (!t.name.empty()) topics.push_back(t.name);
+      for (const SceneKey& k : t.keys) topics.push_back(k.key);
+    }
     const std::string near = nearest_word(v.help_topic, topics);
     throw InputError({"", 0, "help"}, "there is nothing on \"" + printable(v.help_topic, 60) + "\"",
                      near.empty() ? "see ropewalk help" : "did you mean " + near + "?");

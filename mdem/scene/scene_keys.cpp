@@ -35,13 +35,36 @@ std::vector<SceneKey> scene_keys() {
   return all;
 }
 
+namespace {
+
+std::string title_of(const SceneTable& t) {
+  return t.name.empty() ? t.meaning + "\n" : fmt::format("{}  {}\n", t.header(), t.meaning);
+}
+
+std::string line_of(const SceneKey& k) {
+  return fmt::format("  {:31} {:10} {:30} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
+                     k.meaning);
+}
+
+}  // namespace
+
 std::string scene_key_help() {
   std::string text = "Keys of a scene (TOML); `ropewalk new` writes commented ones.\n";
   for (const SceneTable& t : scene_tables()) {
-    text += t.name.empty() ? fmt::format("\n{}\n", t.meaning) : fmt::format("\n{}  {}\n", t.header(), t.meaning);
+    text += "\n" + title_of(t);
+    for (const SceneKey& k : t.keys) text += line_of(k);
+  }
+  return text;
+}
+
+std::string scene_key_help(const std::string& topic) {
+  std::string text;
+  for (const SceneTable& t : scene_tables()) {
+    const bool whole = !t.name.empty() && (topic == t.name || topic == t.header());
+    std::string lines;
     for (const SceneKey& k : t.keys)
-      text += fmt::format("  {:31} {:10} {:30} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
-                          k.meaning);
+      if (whole || k.key == topic) lines += line_of(k);
+    if (!lines.empty()) text += (text.empty() ? "" : "\n") + title_of(t) + lines;
   }
   return text;
 }

@@ -54,6 +54,15 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
     EXPECT_EQ(run("run --help").out.find(word), std::string::npos) << "a verb has its own options alone";
   }
   EXPECT_EQ(run("help run").out, run("run --help").out);
+  const std::string links = run("help links").out;
+  EXPECT_EQ(links.find("[[links]]  "), 0u) << links;
+  EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
+  EXPECT_EQ(links.find("length_nm"), std::string::npos) << links;
+  EXPECT_EQ(run("help '[run]'").out.find("[run]  "), 0u);
+  const std::string length = run("help length_nm").out;
+  for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
+    EXPECT_NE(length.find(word), std::string::npos) << length;
+  EXPECT_EQ(length.find("spacing_nm"), std::string::npos) << length;
   const Outcome version = run("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_NE(version.out.find("GNU"), std::string::npos) << version.out;
@@ -72,6 +81,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
         std::pair{"help scen", "did you mean scene?"},
+        std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
