@@ -113,6 +113,9 @@ std::map<double, std::vector<std::size_t>> rings(const std::vector<double>& radi
 
 std::string tension_figure(const ReportInput& in, Figures& figures) {
   const ReportLoading& last = in.loading.back();
+  // Tubes of several lengths have no common place along the rope.
+  for (const std::vector<double>& tube : last.tension_nN)
+    if (tube.size() != last.tension_nN.front().size()) return "";
   const std::string title = "Tension along the tubes";
   LineChart chart;
   chart.title = title;
