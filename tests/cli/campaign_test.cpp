@@ -527,6 +527,8 @@ TEST_F(Campaign, TheStrengthOfRopesOfFiniteTubes) {
   EXPECT_NE(still.err.find("nothing pulls in it"), std::string::npos) << still.err;
   // What a run that goes on has borne so far is no strength.
   ASSERT_EQ(run("run rope.toml --out half --until 20 --quiet").code, 0);
+  EXPECT_EQ(slurp(dir / "half/report.html").find("Tension along the tubes"), std::string::npos)
+      << "tubes of several lengths have no common place along the rope";
   std::string manifest = slurp(dir / "half/manifest.json");
   const std::string finished = "\"finished\"";
   ASSERT_NE(manifest.find(finished), std::string::npos) << manifest;
