@@ -50,7 +50,7 @@ struct Wanted {
   std::string page, title;  // page: HTML; empty: the files of --svg and --csv instead
 };
 
-// What a run that goes on or has failed bore so far is no strength.
+// The groups without runs that have failed or still go on: the largest stress of such a run is not its strength.
 std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string& where) {
   std::size_t all = 0, left = 0;
   for (RunGroup& group : groups) {

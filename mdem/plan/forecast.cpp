@@ -32,7 +32,7 @@ std::string gentle_ramp(const Scene& scene, double part) {
                      ramp.rate * std::sqrt(part) / units::nN_nm);
 }
 
-// A turn of one end of a rope against the other that is prescribed, or of the two ends of a slice.
+// The prescribed turn of one end of a rope, or of a slice, against the other end.
 struct Turn {
   double angle = 0, rate = 0, length = 0;  // rad, rad/ps, nm
   bool length_held = false;

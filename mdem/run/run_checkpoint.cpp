@@ -157,7 +157,7 @@ RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
 }
 
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint) {
-  // All of it is in memory once: a string that grows by itself would take twice as much.
+  // Room is reserved, since a growing string takes up to twice its size.
   std::size_t room = 1 << 18;
   for (const RunCheckpoint* c = &checkpoint; c; c = c->mark.get()) room += c->simulation.size();
   Writer write;

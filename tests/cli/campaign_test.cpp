@@ -525,7 +525,7 @@ TEST_F(Campaign, TheStrengthOfRopesOfFiniteTubes) {
   const auto still = run("compare still --tensile --csv still.csv");
   EXPECT_EQ(still.code, 2);
   EXPECT_NE(still.err.find("nothing pulls in it"), std::string::npos) << still.err;
-  // What a run that goes on has borne so far is no strength.
+  // The largest stress of a run that still goes on is not its strength.
   ASSERT_EQ(run("run rope.toml --out half --until 20 --quiet").code, 0);
   EXPECT_EQ(slurp(dir / "half/report.html").find("Tension along the tubes"), std::string::npos)
       << "tubes of several lengths have no common place along the rope";

@@ -194,8 +194,8 @@ bool Simulation::could_go_on(double step_of_scene) const {
 
 std::string Simulation::serialise() const {
   Writer write;
-  // Place, orientation, velocities and forces of an element, and its place and axis in the list. A string that grows
-  // by itself would take twice as much.
+  // The numbers of one element: 13 of its state, 6 of its place and axis in the neighbour list, 6 of its force and
+  // torque. Room is reserved, since a growing string takes up to twice its size.
   constexpr std::size_t bytes_of_element = (13 + 6 + 6) * sizeof(double);
   write.bytes.reserve(bytes_of_element * state_.size() + (1 << 16));
   CheckpointHead head{{}, topology_.elements(), topology_.tubes()};

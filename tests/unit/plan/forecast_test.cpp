@@ -56,7 +56,7 @@ TEST(QuasiStatic, TheFastestRampCountsAndATubeInLineCountsByItsLength) {
                     two = turn_of(slice(130, "", "[[0, 0], [900, 0.5], [950, 1]]")),
                     finite = turn_of(slice(130, tubes_of_30, "[[0, 0], [100, 1]]"));
   EXPECT_NEAR(two.error, one.error, 1e-6 * one.error);
-  // More elements of a strand are images where tubes end.
+  // A slice of finite tubes has more images, and so a shorter period.
   EXPECT_NEAR(finite.error / finite.travel, one.error / one.travel, 0.02 * one.error / one.travel);
   EXPECT_NEAR(finite.travel / one.travel, period_of(tubes_of_30) / period_of(""), 0.02);
 }

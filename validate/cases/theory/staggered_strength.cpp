@@ -1,4 +1,4 @@
-// What two overlapping tubes of a rope of finite tubes bear: by cohesion alone, and by dry friction.
+// The force that draws two overlapping tubes apart: by cohesion alone, and with dry friction.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr double friction = 20;     // pN/nm, axial
 constexpr double breaks_at = 1e-3;  // strain
 constexpr double speed = 0.004;     // nm/ps
 constexpr double way = 2;           // nm, of the pulled end
-constexpr double seen_from = 1;     // nm of the way, once all of the overlap slides
+constexpr double seen_from = 1;     // nm of the way: from here on the whole overlap slides
 
 // Two tubes side by side that move along their axis alone, and overlap by so many elements once the second is drawn
 // out by `out` of them. The first is held at its lower end, and something holds the second at its upper.
@@ -43,7 +43,8 @@ struct Joint {
   }
 };
 
-// Without friction: from the energies at rest one element apart, where the elements face each other alike.
+// Force of cohesion, eV/nm: the difference of two energies at rest. The overlaps differ by one whole element, so
+// that the nodes of both tubes face one another alike and the grain of the rows cancels.
 double force_of_cohesion(const ParameterSet& set, int overlap) {
   const auto energy = [&](int out) {
     const Joint joint(set, overlap + beyond, out,
@@ -57,7 +58,7 @@ double force_of_cohesion(const ParameterSet& set, int overlap) {
 }
 
 struct Pulled {
-  double force = 0;    // eV/nm, mean from seen_from to the end of the way
+  double force = 0;    // eV/nm, mean over the way of the pulled end from seen_from on
   double largest = 0;  // eV/nm
   bool broken = false;
 };
@@ -77,7 +78,7 @@ Pulled pulled(const ParameterSet& set, int overlap, bool may_break) {
   long seen = 0;
   for (long k = 0; k < looks && !out.broken; ++k) {
     s.steps((k + 1) * steps / looks - k * steps / looks);
-    // The mean over bonds of the part that is out of the overlap.
+    // Mean tension of the bonds outside of the overlap.
     constexpr int bonds = beyond - 4;
     double tension = 0;
     for (int b = 0; b < bonds; ++b) {
