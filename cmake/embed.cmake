@@ -1,7 +1,8 @@
-# Writes OUTPUT, a C++ source file with the text of each entry of FILES ("name=path|name=path,path") as a constant `name`.
+# Writes OUTPUT, a C++ source file with the text of each entry of FILES ("name=path|name=path,path") as a constant `name`
+# that HEADER declares.
 # A name without a path gets an empty text. Several paths are modules of JavaScript that become one script: each stands before
 # those that import from it, and the lines and words by which they import and export are left out.
-file(WRITE "${OUTPUT}.new" "// Written by cmake/embed.cmake.\n#include \"report/view/view_files.hpp\"\n\nnamespace ropewalk {\n\n")
+file(WRITE "${OUTPUT}.new" "// Written by cmake/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace ropewalk {\n\n")
 string(REPLACE "|" ";" FILES "${FILES}")
 foreach(entry ${FILES})
   string(REGEX MATCH "^([^=]*)=(.*)$" entry "${entry}")

@@ -96,6 +96,13 @@ void add_instructions(CLI::App* c, std::string& name, const char* of, const std:
       ->check(CLI::IsMember(instruction_sets()));
 }
 
+void add_device(CLI::App* c, std::string& name, const std::string& by_default) {
+  c->add_option("--device", name,
+                "Device that moves the elements (a GPU pays from 50 000 elements on): gpu, opencl:TEXT for an OpenCL "
+                "device with TEXT in its name, c++ for its kernels on this processor, or none [default: " +
+                    by_default + "]");
+}
+
 CLI::Validator thread_range() { return whole_number(1, 1024); }
 
 void add_new(CLI::App& app, Verbs& v) {
@@ -125,6 +132,7 @@ void add_run(CLI::App& app, Verbs& v) {
   add_wall_time(c, v.run.wall_time);
   add_instructions(c, v.run.instructions, "the calculation, for the same bits on other processors",
                    instruction_sets().front());
+  add_device(c, v.run.device, "none");
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
   c->callback([&v] { v.code = run_command(v.run); });
@@ -171,6 +179,7 @@ void add_resume(CLI::App& app, Verbs& v) {
   add_on_limit(c, v.resume.on_limit);
   add_wall_time(c, v.resume.wall_time);
   add_instructions(c, v.resume.instructions, "the calculation", "that of the run");
+  add_device(c, v.resume.device, "that of the run");
   c->add_flag("--accept-changes", v.resume.accept_changes,
               "Go on although the scene, the parameter set or the program is not what the run was begun with");
   c->add_flag("--quiet", v.resume.quiet, "No progress line");
@@ -459,18 +468,19 @@ void add_bench(CLI::App& app, Verbs& v) {
       ->delimiter(',')
       ->check(thread_range());
   add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
+  add_device(c, v.bench.device, "none");
   CLI::Option* lammps = c->add_option("--lammps", v.bench.lammps,
                                       "Time lmp-ropewalk on so many ranks against as many threads, by turns")
                             ->check(thread_range());
   c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
-  for (const char* other : {"--after", "--threads", "--instructions"}) lammps->excludes(c->get_option(other));
+  for (const char* other : {"--after", "--threads", "--instructions", "--device"}) lammps->excludes(c->get_option(other));
   CLI::Option* parts =
       c->add_option(
            "--parts", v.bench.parts,
            "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
            "forces of each part alone")
           ->check(whole_number(1, 4096));
-  for (const char* other : {"--after", "--threads", "--instructions", "--lammps"})
+  for (const char* other : {"--after", "--threads", "--instructions", "--device", "--lammps"})
     parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] { v.code = bench_command(v.bench); });

@@ -19,6 +19,7 @@ struct RunArguments {
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
   std::string wall_time;          // see seconds_of_wall_time(); empty: any
   std::string instructions;       // empty: the machine's best
+  std::string device;             // see RunSettings
   bool force = false;             // overwrite an earlier run
   bool quiet = false;
 };
@@ -32,6 +33,7 @@ struct ResumeArguments {
   std::string on_limit = "warn";
   std::string wall_time;        // likewise
   std::string instructions;     // empty: those that the run was begun with
+  std::string device;           // see RunSettings
   bool accept_changes = false;  // of scene, sets or program
   bool quiet = false;
 };
@@ -198,6 +200,7 @@ struct BenchArguments {
   std::string scene;         // a file, or a name of --list
   std::string law;           // of a named scene; empty: line
   std::string instructions;  // for the contact; empty: the machine's best
+  std::string device;        // empty: none
   long steps = 200;
   double after = -1;               // ps that the scene runs before it is measured; less than zero: as --list has it
   std::vector<int> threads = {1};  // measured one after another
@@ -210,6 +213,7 @@ struct BenchArguments {
 int bench_command(const BenchArguments& arguments);
 int bench_lammps(const BenchArguments& arguments);
 int bench_parts(const BenchArguments& arguments);
+int bench_device(const BenchArguments& arguments);
 
 struct PlanArguments {
   std::string scene;

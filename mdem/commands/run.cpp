@@ -16,6 +16,7 @@ Settings settings_of(const Arguments& a) {
   s.steps = a.steps;
   s.until_ps = a.until_ps;
   s.on_limit = on_limit_of(a.on_limit);
+  s.device = a.device;
   s.wall_time = {seconds_of_wall_time(a.wall_time), program_start()};
   return s;
 }

@@ -16,6 +16,7 @@ struct Manifest {
   std::string compiler;
   std::string build_type;
   std::string instructions;
+  std::string device;  // name of the device that moved the elements; empty: none
   int threads = 0;
   std::uint64_t seed = 0;
   std::string scene_hash;      // xxh64, hex

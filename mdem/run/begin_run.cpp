@@ -46,6 +46,16 @@ void use_instructions_of(const RunOrigin& origin, const std::string& asked_for, 
                               instructions_in_use()));
 }
 
+// The device that the run was begun on, unless another one is asked for. All devices give the same bits.
+std::string device_of(const RunOrigin& origin, const std::string& asked_for, RunListener& listener) {
+  if (asked_for.empty()) return origin.device;
+  const bool now = asked_for != no_device, before = !origin.device.empty();
+  if (now != before)
+    listener.tell(now ? "note: it goes on with a device: last digits differ"
+                      : "note: it goes on without a device: last digits differ");
+  return asked_for;
+}
+
 // Leaves no part of a run that has no checkpoint, as far as the disk lets it.
 void give_up(const RunDirectory& dir, std::unique_ptr<Run> run, bool keep_directory) {
   try {
@@ -100,7 +110,9 @@ std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& a
   for (const std::string& note : notes) listener.tell("note: " + note);
   // The next one that is written must not take the place of the only good one.
   if (point.path != dir.checkpoint()) std::filesystem::remove(dir.checkpoint());
-  auto run = std::make_unique<Run>(dir, scene, asked, listener);
+  ResumeSettings settings = asked;
+  settings.device = device_of(point.checkpoint.origin, asked.device, listener);
+  auto run = std::make_unique<Run>(dir, scene, settings, listener);
   run->hold(std::move(lock));
   run->restore(std::move(point.checkpoint));
   run->end_at(asked.steps, asked.until_ps);

@@ -10,12 +10,12 @@ namespace ropewalk {
 
 StopReason DynamicsLoop::go() {
   const std::int64_t last_step = run_.schedule.last_step();
-  run_.listener.begin_loop(static_cast<double>(run_.state().step), static_cast<double>(last_step));
+  run_.listener.begin_loop(static_cast<double>(run_.step()), static_cast<double>(last_step));
   run_.checkpoints.begin_interval();
   if (run_.at_once != StopReason::none) return run_.at_once;
   if (!run_.checkpoints.mark()) run_.way_back.set_mark();
   StopReason end = StopReason::none;
-  while (end == StopReason::none && run_.state().step < last_step) {
+  while (end == StopReason::none && run_.step() < last_step) {
     const Turn turn = next_turn();
     if (advance(turn))
       end = end_of(turn);
@@ -30,8 +30,8 @@ StopReason DynamicsLoop::go() {
 DynamicsLoop::Turn DynamicsLoop::next_turn() const {
   const RunSchedule& s = run_.schedule;
   Turn t;
-  t.count = stop_ == StopReason::none ? s.steps_to_next(run_.state().step, seconds_of_a_step_) : 1;
-  t.step = run_.state().step + t.count;
+  t.count = stop_ == StopReason::none ? s.steps_to_next(run_.step(), seconds_of_a_step_) : 1;
+  t.step = run_.step() + t.count;
   t.last = t.step == s.last_step();
   t.logged = s.has_row(t.step) || t.last || stop_ != StopReason::none;
   t.marked = t.step % StepControl::window == 0;
@@ -83,7 +83,7 @@ bool DynamicsLoop::is_decided() {
 }
 
 std::string DynamicsLoop::status() const {
-  const double time = run_.state().time;
+  const double time = run_.moving.simulation.time();
   const LogRow& row = run_.last_row;
   std::string text = fmt::format("{:8.2f} ps", time);
   if (const MomentRamp* ramp = run_.moving.scene.moment_ramp())

@@ -53,6 +53,7 @@ RefinementRecord go_on_finer(const RunParts& coarse, RunParts& fine) {
                              from.simulation.account());
   to.simulation.set_gauges(to.observer.loading.ends, to.prepared.state);
   to.simulation.inherit_from(from.simulation.gauges().sums);
+  fine.use_device();
   to.first_energy = from.first_energy + to.simulation.total_energy() - from.simulation.total_energy();
   fine.clock.earlier = coarse.clock.seconds();
   fine.limits.inherit(limits_left(coarse.limits), at.state.step);

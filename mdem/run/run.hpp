@@ -67,6 +67,7 @@ class Run {
   RunResult go();
 
  private:
+  std::string device_name() const;
   void keep_time_step();
   void write_end(const char* status, const std::string& reason);
   RunResult result(RunEnd end, const std::string& reason) const;

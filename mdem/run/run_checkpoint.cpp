@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 5 ";
+constexpr const char* title = "ROPEWALK-CHECKPOINT 6 ";
 constexpr std::size_t hash_length = 16;
 
 struct Writer : ByteWriter {
@@ -52,7 +52,7 @@ void visit_origin(Archive& archive, Origin& o) {
     if constexpr (!std::is_const_v<Origin>) hashes->resize(std::min<std::uint64_t>(count, 1000));
     for (auto& hash : *hashes) archive(hash);
   }
-  for (auto* text : {&o.state, &o.version, &o.git_id, &o.instructions}) archive(*text);
+  for (auto* text : {&o.state, &o.version, &o.git_id, &o.instructions, &o.device}) archive(*text);
 }
 
 template <class Archive, class Checkpoint>

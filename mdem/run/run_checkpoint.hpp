@@ -22,8 +22,9 @@ struct RunOrigin {
   std::string state;              // hash of the start, of a scene that reads its state from a file
   std::string version, git_id;    // of the program
   std::string instructions;       // see instructions_in_use()
+  std::string device;             // as --device names it; empty: none
 };
-// The origin of a run in this directory by this program.
+// The origin of a run in this directory by this program, without a device.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);
 
 struct RunCheckpoint {

@@ -17,6 +17,7 @@ Manifest manifest_of(const RunParts& run, const std::string& status, const std::
   m.compiler = compiler;
   m.build_type = build_type;
   m.instructions = instructions_in_use();
+  if (const DeviceStepper* device = run.moving.simulation.device()) m.device = device->name();
   m.threads = omp_get_max_threads();
   m.seed = scene.start.seed;
   m.scene_hash = scene.hash;
@@ -24,7 +25,7 @@ Manifest manifest_of(const RunParts& run, const std::string& status, const std::
   m.grade = fmt::format("{}", fmt::join(grades_of(scene), "; "));
   m.started = run.clock.begun;
   m.wall_seconds = run.clock.seconds();
-  m.steps = run.state().step;
+  m.steps = run.step();
   m.time_step_fs = run.moving.prepared.time_step / units::fs;
   m.status = status;
   m.reason = reason;

@@ -1,5 +1,9 @@
 #include "run/run_parts.hpp"
 
+#include <stdexcept>
+
+#include "model/error.hpp"
+
 namespace ropewalk {
 
 RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunListener& follower)
@@ -11,7 +15,19 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
       files(std::move(dir), listener),
       limits(settings.on_limit, moving, schedule, files, listener),
       checkpoints(moving, files, limits, clock, listener),
-      way_back(moving, files, limits, stops, checkpoints, listener) {}
+      way_back(moving, files, limits, stops, checkpoints, listener) {
+  use_device();
+}
+
+void RunParts::use_device() {
+  const std::string& name = settings.device;
+  if (name.empty() || name == no_device || moving.relaxes()) return;
+  try {
+    moving.simulation.use_device(name);
+  } catch (const std::invalid_argument& e) {
+    throw InputError({"", 0, "--device"}, e.what(), "leave the option out to run the scene on this processor");
+  }
+}
 
 void RunParts::write_row() {
   last_row = moving.row();

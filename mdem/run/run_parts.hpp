@@ -14,6 +14,9 @@ struct RunParts {
   RunParts& operator=(const RunParts&) = delete;
 
   const State& state() const { return moving.state(); }
+  std::int64_t step() const { return moving.simulation.step_count(); }
+  // Moves the scene on the device that the settings name. Throws InputError where it cannot.
+  void use_device();
   void write_row();
   void write_frame() { files.write_frame(moving); }
   // Asks the listener and the clock whether the run has to stop now. Returns the reason, or StopReason::none.

@@ -8,12 +8,17 @@
 
 namespace ropewalk {
 
+inline constexpr char no_device[] = "none";
+
 struct RunSettings {
   long steps = -1;       // time step at which it stops; -1: the scene's end
   double until_ps = -1;  // time at which it stops; -1: the scene's end
   OnLimit on_limit = OnLimit::warn;
   WallTime wall_time;
   bool force = false;  // replace an earlier run
+  // As open_device() names it; empty: this processor alone (resume: what the run was begun with); "none": this
+  // processor alone.
+  std::string device;
 };
 
 struct ResumeSettings : RunSettings {

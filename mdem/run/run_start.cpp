@@ -42,10 +42,14 @@ void Run::tell_notes() const {
     for (const std::string& note : notes) parts_.listener.tell_note(note);
 }
 
+// Under which `resume` goes on.
+std::string Run::device_name() const { return parts_.moving.simulation.device() ? parts_.settings.device : ""; }
+
 void Run::begin_files() {
   RunParts& p = parts_;
   const Scene& scene = p.moving.scene;
   p.checkpoints.origin = origin_of(p.files.directory(), scene);
+  p.checkpoints.origin.device = device_name();
   write_manifest("running");  // before the checkpoint: it has the name of the scene
   p.files.open(scene.run.frames_format, 0, 0, p.schedule.expected_frames());
   p.files.write_header();
@@ -72,6 +76,7 @@ void Run::restore(RunCheckpoint c) {
   p.moving.control = c.control;
   p.clock.earlier = c.wall_seconds;
   p.checkpoints.origin = origin_of(dir, p.moving.scene);
+  p.checkpoints.origin.device = device_name();
   p.files.open(p.moving.scene.run.frames_format, c.log.bytes, c.frames.bytes, p.schedule.expected_frames());
   p.limits.inherit(c.limits, p.state().step);
   if (!p.stops.empty())

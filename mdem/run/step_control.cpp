@@ -7,7 +7,7 @@
 namespace ropewalk {
 
 void StepControl::shorten(int divided, Simulation& simulation) {
-  const std::int64_t step = simulation.state().step;
+  const std::int64_t step = simulation.step_count();
   simulation.divide_steps(2 * divided);
   const bool too_early = kept_until > 0 && step >= kept_until;  // they had just been put together again
   if (too_early) keep = std::min(2 * keep, most_keep);
@@ -15,7 +15,7 @@ void StepControl::shorten(int divided, Simulation& simulation) {
 }
 
 void StepControl::lengthen(Simulation& simulation) {
-  const std::int64_t step = simulation.state().step;
+  const std::int64_t step = simulation.step_count();
   if (step < kept_until) return;
   if (simulation.divided() > 1) {
     simulation.divide_steps(simulation.divided() / 2);

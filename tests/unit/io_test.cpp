@@ -645,7 +645,7 @@ TEST_F(IoTest, ManifestErrors) {
   const auto reading = [&](const std::string& text) {
     return [this, text] { read_manifest(put("m.json", text)); };
   };
-  expect_error(reading(replaced(good, "\"seed\": ", "\"seed\" ")), 9, "not JSON");
+  expect_error(reading(replaced(good, "\"seed\": ", "\"seed\" ")), 10, "not JSON");
   expect_error(reading("[1]"), 0, "format");
   expect_error(reading("{\"format\": 3}"), 0, "format");
   expect_error(reading(replaced(good, "\"seed\"", "\"sed\"")), 0, "seed: is missing");

@@ -167,6 +167,12 @@ std::optional<LoadEffect> PeriodicLoad::effect() const {
   return out;
 }
 
+std::vector<int> PeriodicLoad::reads(const Topology& topology) const {
+  std::vector<int> originals;
+  for (const int image : elements) originals.push_back(topology.original_of(image));
+  return originals;
+}
+
 double PeriodicLoad::lasts() const {
   double last = twist.back().time;
   for (const auto* points : {&strain, &tension})

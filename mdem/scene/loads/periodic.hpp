@@ -45,6 +45,7 @@ class PeriodicLoad : public Load {
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
+  std::vector<int> reads(const Topology& topology) const override;  // the originals
   void constrain(const Topology&, double time, double ahead, State&) const override;
   void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
   std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }

@@ -193,6 +193,7 @@ bool Simulation::could_go_on(double step_of_scene) const {
 }
 
 std::string Simulation::serialise() const {
+  fetch();
   Writer write;
   // The numbers of one element: 13 of its state, 6 of its place and axis in the neighbour list, 6 of its force and
   // torque. Room is reserved, since a growing string takes up to twice its size.
@@ -208,6 +209,7 @@ std::string Simulation::serialise() const {
 }
 
 void Simulation::restore(const std::string& bytes) {
+  come_back();
   Reader read{{bytes}};
   CheckpointHead head;
   read(head);

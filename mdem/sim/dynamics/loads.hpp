@@ -58,6 +58,8 @@ class Load {
   virtual ~Load() = default;
   virtual std::shared_ptr<Load> copy() const = 0;
   virtual Order order() const { return Order::force; }
+  // What else it looks at: of the state it reads nothing but these and `elements`.
+  virtual std::vector<int> reads(const Topology&) const { return {}; }
 
   // Appends the forces and torques at this time.
   virtual void add_forces(const State&, double /*time*/, std::vector<PointLoad>&) const {}

@@ -92,6 +92,7 @@ Simulation::Motion Simulation::free_accelerations(const Motion& forces) const {
 }
 
 double Simulation::largest_force() const {
+  fetch();
   const Motion free = free_accelerations({forces_.force, forces_.torque});
   double largest = 0;
   for_elements(topology_, [&](const TubeType& type, std::size_t i) {
@@ -350,6 +351,7 @@ void Simulation::end_relaxation() {
 }
 
 bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
+  come_back();
   end_relaxation();
   begin_relaxation({tolerance, std::numeric_limits<double>::infinity()});
   const PartEnd end = relax_part(max_steps, progress);
@@ -359,6 +361,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
 
 // If the forces are small and the energy is not, the forces have to become smaller.
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
+  come_back();
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle

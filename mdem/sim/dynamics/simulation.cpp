@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "model/contract.hpp"
@@ -88,6 +89,7 @@ struct Simulation::System {
   void drift(double dt) { s.drift(dt); }
   void exchange_heat(double dt) { s.exchange_heat(dt); }
   void compute_forces() {
+    if (s.device_.stepper) return s.compute_on_device();
     s.update_list();
     s.compute(energies, s.part_step());
     s.check_forces(energies);
@@ -102,9 +104,11 @@ void Simulation::steps(long count, bool energies) {
   const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
     const double began = omp_get_wtime(), elsewhere = engine_seconds() + list_seconds_;
+    if (device_.stepper) hand_over();
     step_once((energies && k + 1 == count) || always);
     integration_seconds_ += omp_get_wtime() - began - (engine_seconds() + list_seconds_ - elsewhere);
   }
+  if (device_.stepper && count > 0) device_.energies_missing = energies;
 }
 
 void Simulation::step_once(bool energies) {
@@ -120,6 +124,19 @@ void Simulation::step_once(bool energies) {
 // --- motion -------------------------------------------------------------------------------------------
 
 void Simulation::kick(double dt) {
+  if (device_.stepper) {
+    device_.stepper->kick(dt);
+    for (const Segment& part : device_.hosted) ropewalk::kick(topology_, nullptr, rows_of(forces_), dt, part, state_);
+  } else {
+    kick_all(dt);
+  }
+  if (loads_.empty()) return;
+  constrain(topology_, loads_, loaded_, state_.time, 0.5 * part_step(), forces_, dt, state_, impulses_);
+  for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
+  gauges_.add_constraints(state_, impulses_);
+}
+
+void Simulation::kick_all(double dt) {
   const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
   const ForceRows total = rows_of(forces_);
   removed_.resize(static_cast<std::size_t>(parts_.count()));
@@ -127,10 +144,6 @@ void Simulation::kick(double dt) {
   for (int k = 0; k < parts_.count(); ++k)
     removed_[static_cast<std::size_t>(k)] = ropewalk::kick(topology_, terms, total, dt, parts_[k], state_);
   if (terms) account_.dissipated += std::accumulate(removed_.begin(), removed_.end(), 0.0);
-  if (loads_.empty()) return;
-  constrain(topology_, loads_, loaded_, state_.time, 0.5 * part_step(), forces_, dt, state_, impulses_);
-  for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
-  gauges_.add_constraints(state_, impulses_);
 }
 
 // The work of the loads is exact: the mean power before and after the kick, times dt.
@@ -154,11 +167,22 @@ void Simulation::move(double dt) {
 }
 
 void Simulation::drift(double dt) {
+  if (device_.stepper) {
+    for (const Segment& part : device_.hosted) move_elements(state_, dt, part.begin, part.end);
+    device_.stepper->drift(dt, state_, list_);
+    state_.time += dt;
+    gauges_.follow(state_);
+    return;
+  }
   move(dt);
   state_.time += dt;
   gauges_.follow(state_);
   const MotionBound bound(topology_.largest_radius(), part_step());
-  if (std::all_of(fastest_.begin(), fastest_.end(), [&](const Fastest& f) { return bound.holds(f); })) return;
+  if (!std::all_of(fastest_.begin(), fastest_.end(), [&](const Fastest& f) { return bound.holds(f); }))
+    refuse_blow_up(bound);
+}
+
+void Simulation::refuse_blow_up(const MotionBound& bound) const {
   int broken = 0;
   while (broken + 1 < topology_.elements() && bound.holds(fastest(state_, broken, broken + 1))) ++broken;
   throw blown_up(state_.step, broken);
@@ -195,6 +219,10 @@ void Simulation::update_list() {
 void Simulation::compute(bool energies, std::optional<double> passed) {
   engine_.compute(topology_, interaction_, list_, state_, forces_, {Parts::all, energies, passed});
   if (!energies) forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
+  add_point_loads();
+}
+
+void Simulation::add_point_loads() {
   point_loads(loads_, state_, state_.time, point_loads_);
   for (const PointLoad& load : point_loads_) {
     forces_.force.add(static_cast<std::size_t>(load.element), load.force);
@@ -218,7 +246,9 @@ void Simulation::relax_spins_if_due() {
   if (interval <= 0) return;
   const auto increments = [&](double time) { return std::floor(time / interval + 1e-9); };
   if (increments(state_.time) == increments(state_.time - time_step_)) return;
+  if (device_.stepper) device_.energies_missing = true;
   const double had = total_energy();
+  come_back();
   relax_spins(topology_, state_);
   compute();
   account_.dissipated += had - total_energy();
@@ -226,6 +256,7 @@ void Simulation::relax_spins_if_due() {
 
 void Simulation::use_loads(LoadsAndConstraints loads) {
   end_relaxation();
+  come_back();
   const auto add = [this](double sign) {
     for (const PointLoad& load : point_loads_) {
       forces_.force.add(static_cast<std::size_t>(load.element), sign * load.force);
@@ -244,7 +275,13 @@ EndReadings Simulation::read_gauges() {
   return gauges_.read_still(state_, reactions_at_rest(topology_, loads_, loaded_, forces_, state_), point_loads_);
 }
 
+void Simulation::use_thermostat(std::shared_ptr<const Thermostat> thermostat) {
+  if (device_.stepper && thermostat) throw std::invalid_argument("a device cannot run this scene: it has no thermostat");
+  stepping_.thermostat = std::move(thermostat);
+}
+
 void Simulation::remember(const std::vector<double>& memory) {
+  come_back();
   engine_.remember(interaction_, memory, topology_.elements());
   engine_.prepare_again(topology_, list_, state_);
   compute();

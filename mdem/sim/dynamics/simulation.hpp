@@ -15,6 +15,7 @@
 #include "sim/dynamics/loads.hpp"
 #include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/step_limit.hpp"
+#include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/stepping.hpp"
 #include "sim/forces/forces.hpp"
 #include "sim/neighbours/neighbours.hpp"
@@ -23,6 +24,8 @@
 #include "sim/state/tiles.hpp"
 
 namespace ropewalk {
+
+struct MotionBound;
 
 // Parts of the limit that are used when the step is not typed. A cold rope hardly moves in the waves that set the
 // limit: its energies are the same to 4 digits with either step. Heat is in all of them: at 300 K, without damping,
@@ -60,9 +63,12 @@ class Simulation {
   const Topology& topology() const { return topology_; }
   const Interaction& interaction() const { return interaction_; }
   const LoadsAndConstraints& loads() const { return loads_; }
-  const State& state() const { return state_; }
-  const Forces& forces() const { return forces_; }
-  const NeighbourList& list() const { return list_; }
+  const State& state() const { return fetch(), state_; }
+  const Forces& forces() const { return fetch(), forces_; }
+  // Those of state(), which a device need not be asked for.
+  double time() const { return state_.time; }
+  std::int64_t step_count() const { return state_.step; }
+  const NeighbourList& list() const;
   const ForceEngine& engine() const { return engine_; }
   double time_step() const { return time_step_; }
   // From now on each step is `parts` shorter ones. Steps are counted as before.
@@ -82,12 +88,22 @@ class Simulation {
   // there counts. The gauges stay on their elements.
   void use_loads(LoadsAndConstraints loads);
   // From the next step on; none: no bath. Its heat so far stays in the account.
-  void use_thermostat(std::shared_ptr<const Thermostat> thermostat) { stepping_.thermostat = std::move(thermostat); }
+  void use_thermostat(std::shared_ptr<const Thermostat> thermostat);
+  // From the next step on a device moves the elements that no load acts on (sim/device/device.hpp has the names). The
+  // energies are still computed here, where they are asked for. Throws std::invalid_argument where it cannot.
+  void use_device(const std::string& name);
+  const DeviceStepper* device() const { return device_.stepper.get(); }
   // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
-  void set_gauges(EndElements ends, const State& start) { gauges_ = Gauges(topology_, std::move(ends), start); }
+  void set_gauges(EndElements ends, const State& start) {
+    come_back();
+    gauges_ = Gauges(topology_, std::move(ends), start);
+  }
   // Mean forces and torques at both ends since the last reading; those of this moment where no time has passed.
   EndReadings read_gauges();
-  double total_energy() const { return forces_.energy.potential() + kinetic_energy(topology_, state_); }
+  double total_energy() const {
+    fetch();
+    return forces_.energy.potential() + kinetic_energy(topology_, state_);
+  }
   // Largest force in eV/nm, torques counted as torque over radius; constrained components left out.
   double largest_force() const;
   std::size_t bytes() const;
@@ -99,6 +115,7 @@ class Simulation {
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
   void inherit_from(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
     ROPEWALK_EXPECTS(force.size() == state_.size() && torque.size() == state_.size());
+    come_back();
     forces_.force = force;
     forces_.torque = torque;
     account_ = account;
@@ -129,13 +146,21 @@ class Simulation {
 
   double part_step() const { return time_step_ / divided_; }
   void step_once(bool energies);
+  // With a device: its newest state and forces are here too; and from here on this processor has them.
+  void fetch() const;
+  void come_back();
+  void hand_over();
+  void compute_on_device();
+  [[noreturn]] void refuse_blow_up(const MotionBound& bound) const;
   void kick(double dt);
+  void kick_all(double dt);
   void kick_with_loads(double dt);
   void drift(double dt);
   void move(double dt);
   void exchange_heat(double dt);
   void update_list();
   void compute(bool energies = true, std::optional<double> passed = {});
+  void add_point_loads();
   void check_forces(bool energies) const;
   void relax_spins_if_due();
   double engine_seconds() const;
@@ -179,6 +204,22 @@ class Simulation {
   Relaxation relaxation_;
   Rest rest_;
   double list_seconds_ = 0, integration_seconds_ = 0;
+
+  // A copy of a simulation has no device. It is made where the state is here as well.
+  struct OwnDevice {
+    std::unique_ptr<DeviceStepper> stepper;
+    bool goes_on = false;           // from where it is, with the loads and gauges of now
+    bool ahead = false;             // its state is newer than the one here
+    bool energies_missing = false;  // those of its state are asked for and not computed yet
+    std::vector<Segment> hosted;    // what this processor moves
+
+    OwnDevice() = default;
+    OwnDevice(const OwnDevice& other) { ROPEWALK_EXPECTS(!other.ahead && !other.energies_missing); }
+    OwnDevice(OwnDevice&&) = default;
+    OwnDevice& operator=(OwnDevice&&) = default;
+    OwnDevice& operator=(const OwnDevice& other) { return *this = OwnDevice(other); }
+  };
+  OwnDevice device_;
 };
 
 }  // namespace ropewalk

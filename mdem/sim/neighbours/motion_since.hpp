@@ -37,6 +37,7 @@ class MotionSince {
   // The common twist against which the next change is measured: [0] is its sine at the middle, [1] its slope. A
   // checkpoint stores it, so that a resumed run finds the same changes.
   std::array<double, 2> twist() const { return {twist_.sine, twist_.slope}; }
+  const TwistOfAll& common_twist() const { return twist_; }
   void set_twist(const std::array<double, 2>& t) { twist_.sine = t[0], twist_.slope = t[1]; }
   std::size_t bytes() const { return 3 * (position_.stride() + axis_.stride()) * sizeof(double); }
 

@@ -45,21 +45,37 @@ Change NeighbourList::change(const State& state, std::ptrdiff_t begin, std::ptrd
 }
 
 void NeighbourList::build(const Topology& topology, const State& state) {
-  Vec3Array axis(state.size());
-  for (std::size_t i = 0; i < state.size(); ++i) axis.set(i, axis_of(state.orientation[i]));
-  build(topology, state.position, std::move(axis));
+  begin(topology, state);
+  find_pairs(topology);
 }
 
 void NeighbourList::build(const Topology& topology, Vec3Array position, Vec3Array axis) {
+  begin(topology, std::move(position), std::move(axis));
+  find_pairs(topology);
+}
+
+void NeighbourList::begin(const Topology& topology, const State& state) {
+  Vec3Array axis(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) axis.set(i, axis_of(state.orientation[i]));
+  begin(topology, state.position, std::move(axis));
+}
+
+void NeighbourList::begin(const Topology& topology, Vec3Array position, Vec3Array axis) {
   ROPEWALK_EXPECTS(cutoff >= 0 && skin >= 0 && lever >= 0);
   static std::atomic<long> stamps{0};
   stamp_ = ++stamps;
   displacement_ = 0;
   since_.start(topology, std::move(position), std::move(axis), others);
+  ++builds_;
+  begin_.clear();
+  spans_.clear();
+  pairs_ = 0;
+}
+
+void NeighbourList::find_pairs(const Topology& topology) {
   const Vec3Array& p = reference();
   const int n = static_cast<int>(p.size());
   const double reach = cutoff + skin;
-  ++builds_;
   begin_.assign(static_cast<std::size_t>(n) + 1, 0);
   spans_.clear();
   pairs_ = 0;

@@ -72,10 +72,15 @@ class NeighbourList {
   Change change(const State& state, std::ptrdiff_t begin, std::ptrdiff_t end) const;
   void build(const Topology& topology, const State& state);
   void build(const Topology& topology, Vec3Array position, Vec3Array axis);
+  // The two parts of build(). Without the second there are no pairs, and another processor finds its own.
+  void begin(const Topology& topology, const State& state);
+  void begin(const Topology& topology, Vec3Array position, Vec3Array axis);
+  void find_pairs(const Topology& topology);
+  bool has_pairs() const { return !begin_.empty(); }
 
   // The neighbours j > i of element i, none of which is in two spans.
   Span<ElementSpan> spans(int i) const {
-    ROPEWALK_EXPECTS(builds_ > 0);
+    ROPEWALK_EXPECTS(has_pairs());
     return entries_of(i, begin_, spans_);
   }
   template <class Work>
@@ -107,6 +112,8 @@ class NeighbourList {
   // step.
   std::array<double, 2> twist() const { return since_.twist(); }
   void set_twist(const std::array<double, 2>& t) { since_.set_twist(t); }
+  // What change() measures against, for another processor that does so.
+  const TwistOfAll& common_twist() const { return since_.common_twist(); }
   // nm: largest distance of the centres of two elements that have points within reach of one another.
   double within() const { return cutoff + skin + 2 * lever; }
   std::size_t bytes() const {

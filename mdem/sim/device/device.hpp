@@ -1,0 +1,73 @@
+// A processor that runs the kernels of kernels.h: one that OpenCL offers, or this one, by the same text read as C++.
+// Commands are done in the order in which they are given; only read() waits for them.
+//
+// OpenCL's library (libOpenCL.so.1) is opened when a device is asked for, so that the program needs it nowhere else.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace ropewalk {
+
+// Numbers that are compiled into the kernels: nodes of an element, types of tubes.
+struct KernelShape {
+  int nodes = 1, types = 1;
+};
+
+class Device {
+ public:
+  using Memory = std::shared_ptr<void>;
+
+  virtual ~Device() = default;
+  virtual std::string name() const = 0;
+
+  // Its content is not defined. Throws std::runtime_error where there is not so much.
+  virtual Memory allocate(std::size_t bytes) = 0;
+  virtual void write(const Memory& to, const void* from, std::size_t bytes) = 0;
+  virtual void read(const Memory& from, void* to, std::size_t bytes) = 0;
+  // Runs a kernel with the arguments that its text names, in their order: Memory for pointers, and values.
+  template <class... A>
+  void run(const char* kernel, int groups, const A&... arguments) {
+    const auto values = std::make_tuple(value_of(arguments)...);
+    std::apply(
+        [&](const auto&... value) {
+          const std::array<Argument, sizeof...(A)> all{Argument{&value, sizeof value}...};
+          launch(kernel, groups, all.data(), static_cast<int>(all.size()));
+        },
+        values);
+  }
+
+ protected:
+  struct Argument {
+    const void* at;
+    std::size_t bytes;
+  };
+  virtual void launch(const char* kernel, int groups, const Argument* arguments, int count) = 0;
+
+ private:
+  static void* value_of(const Memory& memory) { return memory.get(); }
+  template <class T>
+  static const T& value_of(const T& value) {
+    return value;
+  }
+};
+
+// By name:
+//   gpu           the first GPU that OpenCL offers; never another kind of processor
+//   opencl:TEXT   the first device of any kind with TEXT in the name of its platform or in its own
+//   c++           this processor, with the threads of OpenMP
+// Throws std::invalid_argument, in the words of a message to the user, where there is none.
+std::unique_ptr<Device> open_device(const std::string& name, const KernelShape& shape);
+
+// Each as "platform: device". Empty where there is no OpenCL.
+std::vector<std::string> opencl_devices();
+
+// Implementations.
+std::unique_ptr<Device> open_opencl(const std::string& text, bool gpu_only, const KernelShape& shape);
+std::unique_ptr<Device> open_this_processor(const KernelShape& shape);
+
+}  // namespace ropewalk

@@ -1,0 +1,537 @@
+// The kernels of a step of velocity Verlet (sim/dynamics/verlet.hpp), for a device and for C++. Before this text:
+// dialect.h, types.h and the numbers GROUP, LANES, NODES, TYPES.
+//
+// Columns of numbers, one number of each for every element, `stride` apart:
+//   motion     0 position, 3 orientation (w, x, y, z), 7 velocity, 10 angular velocity
+//   force      0 force, 3 torque
+//   bond       of the bond from an element to the next: 0 force on the next, 3 torque on the element, 6 torque on the
+//              next, 9 power of its damping
+//   reference  0 position, 3 axis, where the neighbour list was built
+//   told       what the host wants to know of every element; `summary` sums it up
+// Every element gathers what acts on it, in the order of its neighbours, so that the bits of a run are those of its
+// lists. Units nm, ps, eV; coordinates of the contact are whole numbers of table->unit modulo 2^32
+// (sim/contact/shared/wrapped.hpp).
+
+typedef struct {
+  double x, y, z;
+} Vec;
+
+FUNCTION Vec vec(double x, double y, double z) {
+  Vec v;
+  v.x = x, v.y = y, v.z = z;
+  return v;
+}
+FUNCTION Vec vec_at(GLOBAL const double* a, int column, int stride, int i) {
+  return vec(a[column * stride + i], a[(column + 1) * stride + i], a[(column + 2) * stride + i]);
+}
+FUNCTION void vec_store(Vec v, GLOBAL double* a, int column, int stride, int i) {
+  a[column * stride + i] = v.x;
+  a[(column + 1) * stride + i] = v.y;
+  a[(column + 2) * stride + i] = v.z;
+}
+FUNCTION Vec vec_sum(Vec a, Vec b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
+FUNCTION Vec vec_difference(Vec a, Vec b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
+FUNCTION Vec vec_scaled(double k, Vec a) { return vec(k * a.x, k * a.y, k * a.z); }
+FUNCTION double vec_dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+FUNCTION Vec vec_cross(Vec a, Vec b) {
+  return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+FUNCTION double vec_norm2(Vec a) { return vec_dot(a, a); }
+
+FUNCTION double smaller(double a, double b) { return a < b ? a : b; }
+FUNCTION double larger(double a, double b) { return a > b ? a : b; }
+FUNCTION double within(double x, double low, double high) { return smaller(larger(x, low), high); }
+
+// --- motion -------------------------------------------------------------------------------------------
+
+// v += F dt/m,  w += M dt/I
+KERNEL(kick, GLOBAL const double* force, GLOBAL const int* kind, GLOBAL const ElementType* types, double dt,
+       int elements, int stride, GLOBAL double* motion) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements && !(kind[i] & KIND_HOSTED)) {
+      const double by_mass = dt / types[kind[i] & KIND_TYPE].mass, by_inertia = dt / types[kind[i] & KIND_TYPE].inertia;
+      for (int c = 0; c < 3; ++c) {
+        motion[(7 + c) * stride + i] += by_mass * force[c * stride + i];
+        motion[(10 + c) * stride + i] += by_inertia * force[(3 + c) * stride + i];
+      }
+    }
+  }
+}
+
+// Numbers of the elements `which`, from rows of 13 to the columns of motion.
+KERNEL(put_motion, GLOBAL const int* which, GLOBAL const double* rows, int count, int stride,
+       GLOBAL double* motion) {
+  FOR_ITEMS(t) {
+    const int k = GROUP_NUMBER * GROUP + t;
+    if (k < count)
+      for (int c = 0; c < 13; ++c) motion[c * stride + which[k]] = rows[13 * k + c];
+  }
+}
+
+// sin(h)/h and cos(h) of the square of h.
+FUNCTION double sine_over(double h2) {
+  return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 * (1.0 / 39916800)))));
+}
+FUNCTION double cosine(double h2) {
+  return 1 + h2 * (-0.5 + h2 * (1.0 / 24 + h2 * (-1.0 / 720 + h2 * (1.0 / 40320 + h2 * (-1.0 / 3628800 +
+                                                                                       h2 * (1.0 / 479001600))))));
+}
+
+// x += v dt,  q <- exp(w dt) q  (move_elements in sim/state/motion.hpp); then, of all elements, what the contact
+// reads, and how far they have come (largest_change there).
+KERNEL(drift, GLOBAL double* motion, GLOBAL const int* kind, GLOBAL const double* reference, TwistSince twist,
+       double dt, double per_unit, int elements, int stride, GLOBAL int4* centre, GLOBAL float4* axis,
+       GLOBAL float4* velocity, GLOBAL float4* spin, GLOBAL double* told) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      Vec x = vec_at(motion, 0, stride, i);
+      const Vec v = vec_at(motion, 7, stride, i), w = vec_at(motion, 10, stride, i);
+      double qw = motion[3 * stride + i], qx = motion[4 * stride + i], qy = motion[5 * stride + i],
+             qz = motion[6 * stride + i];
+      const double v2 = vec_norm2(v), w2 = vec_norm2(w);
+      if (!(kind[i] & KIND_HOSTED)) {
+        x = vec_sum(x, vec_scaled(dt, v));
+        const double h2 = 0.25 * dt * dt * w2, scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
+        const double ax = scale * w.x, ay = scale * w.y, az = scale * w.z;
+        const double rw = c * qw - ax * qx - ay * qy - az * qz;
+        const double rx = c * qx + ax * qw + ay * qz - az * qy;
+        const double ry = c * qy + ay * qw + az * qx - ax * qz;
+        const double rz = c * qz + az * qw + ax * qy - ay * qx;
+        const double unit = 1.5 - 0.5 * (rw * rw + rx * rx + ry * ry + rz * rz);
+        qw = unit * rw, qx = unit * rx, qy = unit * ry, qz = unit * rz;
+        vec_store(x, motion, 0, stride, i);
+        motion[3 * stride + i] = qw;
+        vec_store(vec(qx, qy, qz), motion, 4, stride, i);
+      }
+      const Vec n = vec(2 * (qx * qz + qw * qy), 2 * (qy * qz - qw * qx), 1 - 2 * (qx * qx + qy * qy));
+      int4 at;
+      at.x = WHOLE(x.x * per_unit), at.y = WHOLE(x.y * per_unit), at.z = WHOLE(x.z * per_unit);
+      at.w = kind[i] & KIND_TYPE;
+      centre[i] = at;
+      float4 f;
+      f.x = (float)n.x, f.y = (float)n.y, f.z = (float)n.z, f.w = 0;
+      axis[i] = f;
+      f.x = (float)v.x, f.y = (float)v.y, f.z = (float)v.z;
+      velocity[i] = f;
+      f.x = (float)w.x, f.y = (float)w.y, f.z = (float)w.z;
+      spin[i] = f;
+
+      const Vec was = vec_at(reference, 0, stride, i), axis_was = vec_at(reference, 3, stride, i);
+      const double px = was.x - twist.x, py = was.y - twist.y, pz = was.z - twist.middle;
+      const double s = within(twist.sine + twist.slope * pz, -twist.most, twist.most), c = SQRT(1 - s * s);
+      const double ux = x.x - twist.x, uy = x.y - twist.y;
+      const Vec moved = vec(ux - (c * px - s * py), uy - (s * px + c * py), x.z - was.z);
+      const Vec turned = vec(n.x - (c * axis_was.x - s * axis_was.y), n.y - (s * axis_was.x + c * axis_was.y),
+                             n.z - axis_was.z);
+      const double product = px * uy - py * ux;
+      told[TOLD_SPEED2 * stride + i] = v2;
+      told[TOLD_SPIN2 * stride + i] = w2;
+      told[TOLD_MOVED * stride + i] = SQRT(vec_norm2(moved)) + twist.lever * SQRT(vec_norm2(turned));
+      told[TOLD_TURN * stride + i] = product;
+      told[TOLD_TURN_Z * stride + i] = pz * product;
+    }
+  }
+}
+
+// --- neighbours ---------------------------------------------------------------------------------------
+
+// Where the list is built, elements are sorted into cubes as wide as its reach, and cubes into `buckets` buckets, a power
+// of two, by a hash: a scene may be as wide as it likes. cell.w is the bucket.
+KERNEL(count_cells, GLOBAL const double* reference, ListReach reach, int elements, int stride, int buckets,
+       GLOBAL int4* cell, GLOBAL int* count) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      const Vec x = vec_at(reference, 0, stride, i);
+      int4 at;
+      at.x = (int)FLOOR(x.x / reach.centres), at.y = (int)FLOOR(x.y / reach.centres);
+      at.z = (int)FLOOR(x.z / reach.centres);
+      at.w = BUCKET(at.x, at.y, at.z, buckets);
+      cell[i] = at;
+      ATOMIC_INCREMENT(&count[at.w]);
+    }
+  }
+}
+
+// `next`: where the next member of each bucket goes. The order within a bucket is any.
+KERNEL(fill_cells, GLOBAL const int4* cell, int elements, GLOBAL int* next, GLOBAL int* member) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) member[ATOMIC_INCREMENT(&next[cell[i].w])] = i;
+  }
+}
+
+// Whether the centres of i and j > i are within reach of the viscosity, or a node of j within that of the nodes of i,
+// before the list is built again.
+FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
+                       GLOBAL const LineTables* tables, ListReach reach, int stride, int i, int j) {
+  const Vec apart = vec_difference(vec_at(reference, 0, stride, j), vec_at(reference, 0, stride, i));
+  const double square = vec_norm2(apart);
+  if (!(square < reach.centres * reach.centres)) return 0;
+  if (square < reach.viscosity * reach.viscosity) return 1;
+  const int type_i = kind[i] & KIND_TYPE, type_j = kind[j] & KIND_TYPE;
+  const int nodes_i = tables->row[type_i].count, nodes_j = tables->row[type_j].count;
+  const Vec n_i = vec_at(reference, 3, stride, i), n_j = vec_at(reference, 3, stride, j);
+  const double rim = ((nodes_i - 0.5) / nodes_i - 0.5) * types[type_i].length;
+  const double within_reach = tables->cutoff[type_i * TYPES + type_j] + reach.skin;
+  for (int l = 0; l < nodes_j; ++l) {
+    const Vec d = vec_sum(apart, vec_scaled(((l + 0.5) / nodes_j - 0.5) * types[type_j].length, n_j));
+    const double along = within(vec_dot(d, n_i), -rim, rim);
+    if (vec_norm2(vec_difference(d, vec_scaled(along, n_i))) < within_reach * within_reach) return 1;
+  }
+  return 0;
+}
+
+// Counts the neighbours of each element (fill = 0), or lists them from begin[i] on in rising order (fill = 1). Parts of
+// one tube up to element last[i] are none. `first`: of the members of each bucket.
+KERNEL(find_neighbours, GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
+       GLOBAL const LineTables* tables, GLOBAL const int* last, GLOBAL const int4* cell, GLOBAL const int* first,
+       GLOBAL const int* member, ListReach reach, int elements, int stride, int buckets, int fill,
+       GLOBAL const int* begin, GLOBAL int* out) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      const int4 own = cell[i];
+      const int from = fill ? begin[i] : 0;
+      int found = 0;
+      for (int near = 0; near < 27; ++near) {
+        const int x = own.x + near % 3 - 1, y = own.y + near / 3 % 3 - 1, z = own.z + near / 9 - 1;
+        const int bucket = BUCKET(x, y, z, buckets);
+        for (int k = first[bucket]; k < first[bucket + 1]; ++k) {
+          const int j = member[k];
+          const int4 other = cell[j];
+          if (other.x != x || other.y != y || other.z != z || j == i) continue;
+          const int low = i < j ? i : j, high = i < j ? j : i;
+          if (high <= last[low] || !may_touch(reference, kind, types, tables, reach, stride, low, high)) continue;
+          if (fill) {
+            int at = from + found;
+            for (; at > from && out[at - 1] > j; --at) out[at] = out[at - 1];
+            out[at] = j;
+          }
+          ++found;
+        }
+      }
+      if (!fill) out[i] = found;
+    }
+  }
+}
+
+// --- contact ------------------------------------------------------------------------------------------
+
+// Coordinates count modulo 2^32.
+#define APART(to, from) ((int)((unsigned)(to) - (unsigned)(from)))
+
+// The line law (sim/contact/line/kernel.cpp has the formulas). LANES work items to an element, each with every
+// LANES-th node of the neighbours, against all nodes of the element.
+KERNEL(line_contact, GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBAL const int* begin,
+       GLOBAL const int* list, GLOBAL const LineTables* tables, int elements, GLOBAL float4* force,
+       GLOBAL float4* torque) {
+  LOCAL float d[LOCAL_TYPES * LOCAL_TYPES * TERMS * SEGMENTS];
+  LOCAL float sums[6 * GROUP];
+  FOR_ITEMS(t) {
+    for (int m = t; m < TYPES * TYPES * TERMS * SEGMENTS; m += GROUP)
+      d[m] = tables->pair[m / (TERMS * SEGMENTS)].d[m % (TERMS * SEGMENTS)];
+  }
+  BARRIER;
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * (GROUP / LANES) + t / LANES;
+    float fx = 0, fy = 0, fz = 0, mx = 0, my = 0, mz = 0;
+    if (i < elements) {
+      const int4 x = centre[i];
+      const float4 n = axis[i];
+      GLOBAL const NodeRow* own = &tables->row[x.w];
+      const int from = begin[i], end = (begin[i + 1] - from) * NODES;
+      for (int node = t % LANES; node < end; node += LANES) {
+        const int j = list[from + node / NODES], l = node % NODES;
+        const int4 y = centre[j];
+        const float4 m = axis[j];
+        const int pair = x.w * TYPES + y.w;
+        GLOBAL const PairTable* table = &tables->pair[pair];
+        const float s = tables->row[y.w].s[l];
+        const float dx = FMA(s, m.x, (float)APART(y.x, x.x)), dy = FMA(s, m.y, (float)APART(y.y, x.y)),
+                    dz = FMA(s, m.z, (float)APART(y.z, x.z));
+        const float square = FMA(dx, dx, FMA(dy, dy, dz * dz)), along = FMA(n.x, dx, FMA(n.y, dy, n.z * dz));
+        const float outside = (along < 0 ? -along : along) - own->rim, ahead = outside > 0 ? outside : 0;
+        const int absent = l >= tables->row[y.w].count;
+        if (absent || FMA(ahead, ahead, FMA(-along, along, square)) >= table->cutoff2) continue;
+        TO_LOCAL const float* terms = d + pair * TERMS * SEGMENTS;
+        float a = 0, b = 0;
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+#pragma unroll
+#endif
+        for (int k = 0; k < NODES; ++k) {
+          const float sk = own->s[k], X = FMA(sk, sk - 2 * along, square);
+          const float place = FMA(X, table->scale, table->shift);
+          const int bits = BITS_OF(place) >> MANTISSA_LEFT, segment = bits & (SEGMENTS - 1);
+          const float in = place - FLOAT_OF(bits << MANTISSA_LEFT);
+          float slope = terms[(TERMS - 1) * SEGMENTS + segment];
+          for (int q = TERMS - 2; q >= 0; --q) slope = FMA(slope, in, terms[q * SEGMENTS + segment]);
+          if (X < table->core2) {
+            const float rho = SQRT_FLOAT(X > 1e-12f ? X : 1e-12f), h = FMA(rho, table->unit, -table->rest);
+            slope = FMA(h, table->v2, table->v1) * table->unit / (rho * 2 * table->scale);
+          }
+          slope = X < table->cutoff2 && k < own->count ? slope : 0;
+          a += slope;
+          b = FMA(sk, slope, b);
+        }
+        a *= table->weight;
+        b *= table->weight;
+        fx -= FMA(a, dx, -b * n.x);
+        fy -= FMA(a, dy, -b * n.y);
+        fz -= FMA(a, dz, -b * n.z);
+        mx = FMA(b, dx, mx);
+        my = FMA(b, dy, my);
+        mz = FMA(b, dz, mz);
+      }
+    }
+    sums[t] = fx, sums[GROUP + t] = fy, sums[2 * GROUP + t] = fz;
+    sums[3 * GROUP + t] = mx, sums[4 * GROUP + t] = my, sums[5 * GROUP + t] = mz;
+  }
+  for (int step = LANES / 2; step > 0; step /= 2) {
+    BARRIER;
+    FOR_ITEMS(t) {
+      if (t % LANES < step)
+        for (int q = 0; q < 6; ++q) sums[q * GROUP + t] += sums[q * GROUP + t + step];
+    }
+  }
+  BARRIER;
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * (GROUP / LANES) + t / LANES;
+    if (t % LANES == 0 && i < elements) {
+      const float4 n = axis[i];
+      const float unit = (float)tables->unit;
+      const float mx = sums[3 * GROUP + t] * unit, my = sums[4 * GROUP + t] * unit, mz = sums[5 * GROUP + t] * unit;
+      float4 f, q;
+      f.x = sums[t], f.y = sums[GROUP + t], f.z = sums[2 * GROUP + t], f.w = 0;
+      q.x = -(n.y * mz - n.z * my), q.y = -(n.z * mx - n.x * mz), q.z = -(n.x * my - n.y * mx), q.w = 0;
+      force[i] = f;
+      torque[i] = q;
+    }
+  }
+}
+
+// Adds the viscosity of the contact (model/damping.hpp). torque.w is half the power of the element's pairs.
+KERNEL(viscosity, GLOBAL const int4* centre, GLOBAL const float4* velocity, GLOBAL const float4* spin,
+       GLOBAL const int* begin, GLOBAL const int* list, Viscosity law, int elements, GLOBAL float4* force,
+       GLOBAL float4* torque) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      const int4 x = centre[i];
+      const float4 v = velocity[i], w = spin[i];
+      float4 f = force[i], q = torque[i];
+      float power = 0;
+      for (int k = begin[i]; k < begin[i + 1]; ++k) {
+        const int j = list[k];
+        const int4 y = centre[j];
+        const float dx = law.unit * (float)APART(y.x, x.x), dy = law.unit * (float)APART(y.y, x.y),
+                    dz = law.unit * (float)APART(y.z, x.z);
+        const float distance = SQRT_FLOAT(FMA(dx, dx, FMA(dy, dy, dz * dz)));
+        if (distance >= law.outer) continue;
+        const float4 vj = velocity[j], wj = spin[j];
+        const float far = (distance - law.inner) * law.per_width, z = far > 0 ? far : 0;
+        const float strength = law.eta * FMA(-z * z, FMA(-2, z, 3), 1);
+        // Of j to i at the middle, with the arm from i.
+        const float ax = 0.5f * dx, ay = 0.5f * dy, az = 0.5f * dz;
+        const float sx = w.x + wj.x, sy = w.y + wj.y, sz = w.z + wj.z;
+        const float rx = vj.x - v.x - (sy * az - sz * ay), ry = vj.y - v.y - (sz * ax - sx * az),
+                    rz = vj.z - v.z - (sx * ay - sy * ax);
+        const float gx = strength * rx, gy = strength * ry, gz = strength * rz;
+        f.x += gx, f.y += gy, f.z += gz;
+        q.x += ay * gz - az * gy, q.y += az * gx - ax * gz, q.z += ax * gy - ay * gx;
+        power = FMA(gx, rx, FMA(gy, ry, FMA(gz, rz, power)));
+      }
+      q.w = -0.5f * power;
+      force[i] = f;
+      torque[i] = q;
+    }
+  }
+}
+
+// --- bonds --------------------------------------------------------------------------------------------
+
+typedef struct {
+  Vec e1, e2, t;
+} BodyFrame;
+
+FUNCTION BodyFrame frame_at(GLOBAL const double* motion, int stride, int i) {
+  const double w = motion[3 * stride + i], x = motion[4 * stride + i], y = motion[5 * stride + i],
+               z = motion[6 * stride + i];
+  BodyFrame f;
+  f.e1 = vec(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y));
+  f.e2 = vec(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x));
+  f.t = vec(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
+  return f;
+}
+
+typedef struct {
+  Vec force_j, torque_i, torque_j;
+} BondAction;
+
+// harmonic_force and anharmonic_force of model/bond.hpp.
+FUNCTION BondAction harmonic_bond(GLOBAL const ElementType* k, Vec separation, BodyFrame i, BodyFrame j) {
+  const double a = k->length, length = SQRT(vec_norm2(separation));
+  const Vec d = vec_scaled(1 / length, separation), s = vec_sum(i.t, j.t);
+  const double b2 = 12.0 * k->shear_share * k->bend / a, b4 = k->twist / a;
+  const double b3 = (1.0 - 3.0 * k->shear_share) * k->bend / a - 0.5 * b4;
+  const Vec frames = vec_sum(vec_scaled(0.5 * b4, vec_sum(vec_cross(i.e1, j.e1), vec_cross(i.e2, j.e2))),
+                             vec_scaled(b3, vec_cross(i.t, j.t)));
+  BondAction out;
+  out.force_j = vec_sum(vec_scaled(-(k->stretch / a) * (length - a), d),
+                        vec_scaled(0.5 * b2 / length, vec_difference(s, vec_scaled(vec_dot(s, d), d))));
+  out.torque_i = vec_sum(vec_scaled(-0.5 * b2, vec_cross(d, i.t)), frames);
+  out.torque_j = vec_difference(vec_scaled(-0.5 * b2, vec_cross(d, j.t)), frames);
+  return out;
+}
+
+// The angle of (x, y) for x > 0: four times that of a quarter of the angle, by its series. The math libraries' own
+// atan2 have other last bits.
+FUNCTION double angle_of(double y, double x) {
+  const double tangent = y / (SQRT(x * x + y * y) + x);  // of the half angle
+  const double t = tangent / (1 + SQRT(1 + tangent * tangent)), u = t * t;
+  double sum = 0;
+  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - u * sum;
+  return 4 * t * sum;
+}
+
+FUNCTION BondAction anharmonic_bond(GLOBAL const ElementType* k, Vec separation, BodyFrame i, BodyFrame j) {
+  const double a = k->length, length = SQRT(vec_norm2(separation));
+  const Vec d = vec_scaled(1 / length, separation), sum = vec_sum(i.t, j.t);
+  const double u = vec_norm2(vec_difference(i.t, j.t)) * 0.5, arc = 1.0 + u * (1.0 / 12);
+  const double strain = length * arc / a - 1.0;
+  const double twist = angle_of(vec_dot(i.e2, j.e1) - vec_dot(i.e1, j.e2), vec_dot(i.e1, j.e1) + vec_dot(i.e2, j.e2)) / a;
+  const double curvature2 =
+      2.0 * u * (1.0 + u * (1.0 / 6 + u * (2.0 / 45 + u * (1.0 / 70 + u * (8.0 / 1575))))) / (a * a);
+  const double curvature2_slope =
+      2.0 * (1.0 + u * (2.0 / 6 + u * (6.0 / 45 + u * (4.0 / 70 + u * (40.0 / 1575))))) / (a * a);
+  // Derivatives of the energy per length (model/anharmonic.hpp).
+  const double r = k->radius, shear = r * twist;
+  const double e = within(strain, k->min_strain, k->max_strain), s = within(shear, -k->max_shear, k->max_shear);
+  const double de = strain - e, ds = shear - s;
+  const double of_twist = r * (s * (k->twist / (r * r) + s * (3 * k->s3 + 4 * s * k->s4)));
+  const double a1 = s * s * (k->es2 + s * k->es3), a1s = s * (2 * k->es2 + 3 * s * k->es3);
+  const double a2 = s * (k->e2s + s * k->e2s2), a2s = k->e2s + 2 * s * k->e2s2, a3 = k->e3 + s * k->e3s;
+  const double we = a1 + e * (2 * a2 + e * (3 * a3 + e * 4 * k->e4));
+  const double ws = e * (a1s + e * (a2s + e * k->e3s)), wes = a1s + e * (2 * a2s + e * 3 * k->e3s);
+  const double by_strain = we + wes * ds + k->coupling * twist;
+  const double by_twist = r * (ws + wes * de) + k->coupling * strain;
+  const double edge = k->max_bend * k->max_bend / (r * r), quartic = k->b4 * (r * r) * (r * r);
+  const double by_curvature2 = (0.5 * k->bend + 2 * quartic * smaller(curvature2, edge)) *
+                               SQRT(edge / larger(curvature2, edge));
+  const double pull = k->stretch * strain + by_strain, moment = of_twist + by_twist;
+  const double by_u = a * by_curvature2 * curvature2_slope + pull * length * (1.0 / 12);
+
+  const double sum_norm = SQRT(vec_norm2(sum)), stiff = 12.0 * k->shear_share * k->bend / a;
+  const Vec along = vec_scaled(1 / sum_norm, sum);
+  const double cos_psi = vec_dot(along, d);
+  const Vec bending = vec_sum(vec_scaled(by_u, vec_cross(i.t, j.t)), vec_scaled(moment / (2.0 - u), sum));
+  const Vec lean = vec_scaled(stiff / sum_norm, vec_difference(d, vec_scaled(cos_psi, along)));
+  BondAction out;
+  out.force_j = vec_difference(vec_scaled(stiff / length, vec_difference(along, vec_scaled(cos_psi, d))),
+                               vec_scaled(pull * arc, d));
+  out.torque_i = vec_difference(bending, vec_cross(lean, i.t));
+  out.torque_j = vec_difference(vec_scaled(-1, bending), vec_cross(lean, j.t));
+  return out;
+}
+
+// Each bond once, with its damping of the rate `rate` (BondDamping).
+KERNEL(bonds, GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const ElementType* types, double rate,
+       int elements, int stride, GLOBAL double* bond, GLOBAL double* told) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      BondAction f;
+      double power = 0, slips = 0;
+      f.force_j = f.torque_i = f.torque_j = vec(0, 0, 0);
+      if (kind[i] & KIND_BONDED) {
+        const int j = i + 1;
+        GLOBAL const ElementType* type = &types[kind[i] & KIND_TYPE];
+        const BodyFrame fi = frame_at(motion, stride, i), fj = frame_at(motion, stride, j);
+        const Vec separation = vec_difference(vec_at(motion, 0, stride, j), vec_at(motion, 0, stride, i));
+        f = type->anharmonic ? anharmonic_bond(type, separation, fi, fj) : harmonic_bond(type, separation, fi, fj);
+        slips = vec_dot(fi.e1, fj.e1) + vec_dot(fi.e2, fj.e2) > 0 ? 0 : 1;
+        if (rate > 0) {
+          const Vec wi = vec_at(motion, 10, stride, i), wj = vec_at(motion, 10, stride, j);
+          const Vec arm = vec_scaled(0.5, separation), spin = vec_difference(wj, wi);
+          const Vec relative = vec_difference(vec_difference(vec_at(motion, 7, stride, j), vec_at(motion, 7, stride, i)),
+                                              vec_cross(vec_sum(wi, wj), arm));
+          const Vec force = vec_scaled(-0.5 * rate * type->mass, relative);
+          const Vec couple = vec_scaled(-0.5 * rate * type->inertia, spin), lever = vec_cross(force, arm);
+          f.force_j = vec_sum(f.force_j, force);
+          f.torque_i = vec_sum(f.torque_i, vec_difference(lever, couple));
+          f.torque_j = vec_sum(f.torque_j, vec_sum(lever, couple));
+          power = vec_dot(force, relative) + vec_dot(couple, spin);
+        }
+      }
+      vec_store(f.force_j, bond, 0, stride, i);
+      vec_store(f.torque_i, bond, 3, stride, i);
+      vec_store(f.torque_j, bond, 6, stride, i);
+      bond[9 * stride + i] = power;
+      told[TOLD_SLIPS * stride + i] = slips;
+    }
+  }
+}
+
+// The force on every element: of its two bonds, of the contact and of its viscosity.
+KERNEL(collect, GLOBAL const double* bond, GLOBAL const int* kind, GLOBAL const float4* contact_force,
+       GLOBAL const float4* contact_torque, int elements, int stride, GLOBAL double* force, GLOBAL double* told) {
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    if (i < elements) {
+      Vec f = vec_scaled(-1, vec_at(bond, 0, stride, i)), m = vec_at(bond, 3, stride, i);
+      if (i > 0 && (kind[i - 1] & KIND_BONDED)) {
+        f = vec_sum(f, vec_at(bond, 0, stride, i - 1));
+        m = vec_sum(m, vec_at(bond, 6, stride, i - 1));
+      }
+      const float4 cf = contact_force[i], ct = contact_torque[i];
+      vec_store(vec_sum(f, vec(cf.x, cf.y, cf.z)), force, 0, stride, i);
+      vec_store(vec_sum(m, vec(ct.x, ct.y, ct.z)), force, 3, stride, i);
+      told[TOLD_POWER * stride + i] = bond[9 * stride + i] + ct.w;
+    }
+  }
+}
+
+// --- what the host is told ----------------------------------------------------------------------------
+
+// Of each group of elements: the largest of some columns and the sum of the others, in a fixed order. The sum of the
+// speeds alone is sure to be NaN or infinite where a velocity is, and that of the changes where a place is. Of the
+// bonds that slip, the first.
+KERNEL(summary, GLOBAL const double* told, int elements, int stride, int groups, GLOBAL double* out) {
+  LOCAL double sums[SUMMARY * GROUP];
+  FOR_ITEMS(t) {
+    const int i = GROUP_NUMBER * GROUP + t;
+    const int there = i < elements;
+    for (int c = 0; c < TOLD; ++c) sums[c * GROUP + t] = there ? told[c * stride + i] : 0;
+    sums[TOLD_SLIPS * GROUP + t] = sums[TOLD_SLIPS * GROUP + t] > 0 ? i : NO_ELEMENT;
+    sums[SUM_SPEEDS * GROUP + t] = sums[TOLD_SPEED2 * GROUP + t] + sums[TOLD_SPIN2 * GROUP + t];
+    sums[SUM_MOVED * GROUP + t] = sums[TOLD_MOVED * GROUP + t];
+  }
+  for (int step = GROUP / 2; step > 0; step /= 2) {
+    BARRIER;
+    FOR_ITEMS(t) {
+      if (t < step)
+        for (int c = 0; c < SUMMARY; ++c) {
+          const double a = sums[c * GROUP + t], b = sums[c * GROUP + t + step];
+          sums[c * GROUP + t] = c == TOLD_SPEED2 || c == TOLD_SPIN2 || c == TOLD_MOVED ? larger(a, b)
+                                : c == TOLD_SLIPS                                     ? smaller(a, b)
+                                                                                      : a + b;
+        }
+    }
+  }
+  BARRIER;
+  FOR_ITEMS(t) {
+    if (t < SUMMARY) out[t * groups + GROUP_NUMBER] = sums[t * GROUP];
+  }
+}
+
+// Rows of 6 numbers from the columns of force.
+KERNEL(get_force, GLOBAL const double* force, GLOBAL const int* which, int count, int stride,
+       GLOBAL double* rows) {
+  FOR_ITEMS(t) {
+    const int k = GROUP_NUMBER * GROUP + t;
+    if (k < count)
+      for (int c = 0; c < 6; ++c) rows[6 * k + c] = force[c * stride + which[k]];
+  }
+}

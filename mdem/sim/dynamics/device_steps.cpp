@@ -1,0 +1,98 @@
+// Steps of a simulation whose elements are on a device.
+#include <omp.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim/dynamics/blow_up.hpp"
+#include "sim/dynamics/simulation.hpp"
+
+namespace ropewalk {
+
+void Simulation::use_device(const std::string& name) {
+  come_back();
+  if (stepping_.thermostat) throw std::invalid_argument("a device cannot run this scene: it has no thermostat");
+  if (stepping_.runge_kutta)
+    throw std::invalid_argument("a device cannot run this scene: it has no rotations by Runge-Kutta");
+  device_ = {};
+  device_.stepper = std::make_unique<DeviceStepper>(topology_, interaction_, name);
+}
+
+// The loads act on few elements, as a rule; and the gauges are on the ends, which the host must follow.
+void Simulation::hand_over() {
+  if (device_.goes_on) return;
+  std::vector<int> hosted = loaded_;
+  const auto add = [&](const std::vector<int>& more) { hosted.insert(hosted.end(), more.begin(), more.end()); };
+  for (const auto& load : loads_) add(load->reads(topology_));
+  for (const std::vector<int>& end : gauges_.ends()) add(end);
+  std::sort(hosted.begin(), hosted.end());
+  hosted.erase(std::unique(hosted.begin(), hosted.end()), hosted.end());
+  device_.hosted.clear();
+  for (const int i : hosted) {
+    const int tube = topology_.tube_of(i);
+    std::vector<Segment>& parts = device_.hosted;
+    if (!parts.empty() && parts.back().end == i && parts.back().tube == tube) {
+      ++parts.back().end;
+    } else {
+      parts.push_back({tube, i, i + 1});
+    }
+  }
+  device_.stepper->take(state_, forces_, std::move(hosted), list_);
+  device_.goes_on = true;
+}
+
+const NeighbourList& Simulation::list() const {
+  if (!list_.has_pairs()) const_cast<Simulation&>(*this).list_.find_pairs(topology_);
+  return list_;
+}
+
+// The state is the same, wherever it is: who looks at it cannot tell.
+void Simulation::fetch() const {
+  if (!device_.ahead && !device_.energies_missing) return;
+  auto& self = const_cast<Simulation&>(*this);
+  if (device_.ahead) device_.stepper->give(self.state_, self.forces_);
+  self.device_.ahead = false;
+  if (!device_.energies_missing) return;
+  if (!list_.has_pairs()) self.list_.find_pairs(topology_);
+  Forces all(state_.size());
+  self.engine_.compute(topology_, interaction_, list_, state_, all);
+  self.forces_.energy = all.energy;
+  self.forces_.term_energy = all.term_energy;
+  self.device_.energies_missing = false;
+}
+
+void Simulation::come_back() {
+  fetch();
+  if (!list_.has_pairs()) list_.find_pairs(topology_);
+  device_.goes_on = false;
+}
+
+void Simulation::compute_on_device() {
+  device_.ahead = true;
+  device_.energies_missing = false;
+  forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
+  DeviceStepper::Told told = device_.stepper->compute(forces_);
+  const MotionBound bound(topology_.largest_radius(), part_step());
+  if (!bound.holds(told.fastest)) {
+    fetch();
+    refuse_blow_up(bound);
+  }
+  ++list_age_;
+  if (list_.cutoff > 0 && list_.stale(told.change)) {
+    const double began = omp_get_wtime();
+    device_.stepper->give_places(state_);
+    list_.begin(topology_, state_);
+    list_age_ = 0;
+    device_.stepper->use_list(list_);
+    list_seconds_ += omp_get_wtime() - began;
+    told = device_.stepper->compute(forces_);
+  }
+  forces_.damping_power = told.damping_power;
+  forces_.slipping_bond = told.slipping_bond;
+  forces_.lost = 0;
+  add_point_loads();
+  check_forces(false);
+  account_.dissipated -= part_step() * forces_.damping_power;
+}
+
+}  // namespace ropewalk
