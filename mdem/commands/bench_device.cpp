@@ -64,7 +64,8 @@ int bench_device(const BenchArguments& a) {
              omp_get_max_threads() == 1 ? "" : "s");
   fmt::print("{:9.3f} ms a step; {:.0f} bytes per element on the device\n",
              seconds * 1e3 / static_cast<double>(a.steps), static_cast<double>(device.bytes()) / n);
-  fmt::print("{:9.2f} s of wall time per simulated ns\n", seconds / static_cast<double>(a.steps) / prepared.time_step * 1e3);
+  fmt::print("{:9.2f} s of wall time per simulated ns\n",
+             seconds / static_cast<double>(a.steps) / prepared.time_step * 1e3);
   return 0;
 }
 

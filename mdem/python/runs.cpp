@@ -91,7 +91,7 @@ struct Asked {
   std::optional<int> threads;
   std::string on_limit;
   std::optional<double> wall_time_s;
-  std::string instructions;
+  std::string instructions, device;
   py::object tell, progress;
 };
 
@@ -110,6 +110,7 @@ Settings settings_of(const Asked& a) {
   s.steps = a.steps.value_or(-1);
   s.until_ps = a.until_ps.value_or(-1);
   s.on_limit = on_limit_of(a.on_limit);
+  s.device = a.device;
   s.wall_time.allowed = a.wall_time_s.value_or(0);
   return s;
 }
@@ -162,11 +163,12 @@ void bind_runs(py::module_& m) {
   py::class_<Asked>(m, "RunOptions")
       .def(py::init([](std::optional<long> steps, std::optional<double> until_ps, std::optional<int> threads,
                        const std::string& on_limit, std::optional<double> wall_time_s,
-                       const std::string& instructions, const py::object& tell, const py::object& progress) {
-             return Asked{steps, until_ps, threads, on_limit, wall_time_s, instructions, tell, progress};
+                       const std::string& instructions, const std::string& device, const py::object& tell,
+                       const py::object& progress) {
+             return Asked{steps, until_ps, threads, on_limit, wall_time_s, instructions, device, tell, progress};
            }),
            py::arg("steps"), py::arg("until_ps"), py::arg("threads"), py::arg("on_limit"), py::arg("wall_time_s"),
-           py::arg("instructions"), py::arg("tell"), py::arg("progress"));
+           py::arg("instructions"), py::arg("device"), py::arg("tell"), py::arg("progress"));
   m.def("run", run, py::arg("scene"), py::arg("out"), py::arg("force"), py::arg("options"));
   m.def("resume", resume, py::arg("directory"), py::arg("accept_changes"), py::arg("options"));
 }

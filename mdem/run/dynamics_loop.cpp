@@ -34,7 +34,7 @@ DynamicsLoop::Turn DynamicsLoop::next_turn() const {
   t.step = run_.step() + t.count;
   t.last = t.step == s.last_step();
   t.logged = s.has_row(t.step) || t.last || stop_ != StopReason::none;
-  t.marked = t.step % StepControl::window == 0;
+  t.marked = s.has_mark(t.step);
   t.framed = s.has_frame(t.step) || t.last;
   t.checked = t.logged || s.has_check(t.step);
   return t;

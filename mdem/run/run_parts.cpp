@@ -21,9 +21,13 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
 
 void RunParts::use_device() {
   const std::string& name = settings.device;
-  if (name.empty() || name == no_device || moving.relaxes()) return;
+  if (name.empty() || name == no_device) return;
+  if (moving.relaxes())
+    throw InputError({"", 0, "--device"}, "does not go with a relaxation, which this processor does",
+                     "leave the option out");
   try {
     moving.simulation.use_device(name);
+    schedule.look_rarely();
   } catch (const std::invalid_argument& e) {
     throw InputError({"", 0, "--device"}, e.what(), "leave the option out to run the scene on this processor");
   }

@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "model/error.hpp"
-#include "run/step_control.hpp"
 
 namespace ropewalk {
 namespace {
 
-// Steps between two checks of the limits, at most: a check costs about as much as a step.
-constexpr long most_unchecked = 128;
+constexpr long window_of_a_device = 2048;  // steps
 
 long every(double interval, double duration, long parts, double time_step) {
   const double chosen = interval > 0 ? interval : duration / static_cast<double>(parts);
@@ -32,9 +30,14 @@ void RunSchedule::count_from(std::int64_t step, double time, double time_step) {
   const double span = duration_ > 0 ? duration_ : 1000 * time_step;
   log_every_ = every(log_interval_, span, 400, time_step);
   frames_every_ = every(frames_interval_, span, 40, time_step);
-  check_every_ = std::min(log_every_, most_unchecked);
+  check_every_ = std::min(log_every_, window_);
   expected_frames_ = static_cast<std::size_t>(span / time_step / static_cast<double>(frames_every_));
   if (!relaxes_) last_step_ = step_at(duration_);
+}
+
+void RunSchedule::look_rarely() {
+  window_ = window_of_a_device;
+  check_every_ = std::min(log_every_, window_);
 }
 
 // Steps are counted from zero, but where the time step was another one before.
@@ -54,7 +57,7 @@ bool RunSchedule::ends_with_the_scene() const {
 
 long RunSchedule::steps_to_next(std::int64_t step, double seconds_of_a_step) const {
   long count = last_step_ - step;
-  for (const long interval : {check_every_, log_every_, frames_every_, pause_every, long{StepControl::window}})
+  for (const long interval : {check_every_, log_every_, frames_every_, pause_every, window_})
     count = std::min(count, interval - step % interval);
   return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "run/step_control.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -22,6 +23,11 @@ class RunSchedule {
   bool has_row(std::int64_t step) const { return step % log_every_ == 0; }
   bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
   bool has_check(std::int64_t step) const { return step % check_every_ == 0; }
+  // Of a good state, to which the run may go back.
+  bool has_mark(std::int64_t step) const { return step % window_ == 0; }
+  std::int64_t window() const { return window_; }  // between two marks
+  // Where a device moves the elements, a look at their state costs as much as hundreds of steps.
+  void look_rarely();
   static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
   // Steps until something is written or checked, or a request to stop has waited for `patience`.
   long steps_to_next(std::int64_t step, double seconds_of_a_step) const;
@@ -39,7 +45,7 @@ class RunSchedule {
     std::int64_t step = 0;
     double time = 0, time_step = 0;
   } counted_from_;
-  long log_every_ = 1, frames_every_ = 1, check_every_ = 1;
+  long log_every_ = 1, frames_every_ = 1, check_every_ = 1, window_ = StepControl::window;
   std::int64_t last_step_ = -1;
   std::size_t expected_frames_ = 0;
 };

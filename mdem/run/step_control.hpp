@@ -1,4 +1,5 @@
-// The step that follows the motion. A run marks a good state every `window` steps. Where the motion blows up, or
+// The step that follows the motion. A run marks a good state every `window` steps (with a device less often,
+// RunSchedule::look_rarely). Where the motion blows up, or
 // the account of energy does not close over a window, it goes back to the last mark and divides every step in two,
 // up to `most` parts, and puts steps together again once the motion has been quiet. Files count by the whole steps.
 //

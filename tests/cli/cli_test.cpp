@@ -333,6 +333,61 @@ TEST_F(Cli, ARunThatEndsBeforeItsDrivesSaysSo) {
   EXPECT_THAT(run("check t.toml").out, ::testing::Not(HasSubstr("before all drives")));
 }
 
+// --- devices ---------------------------------------------------------------------------------------------
+
+TEST_F(Cli, ADeviceRunsResumesAndIsNamed) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 16\n"
+       "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [2, 30]] }\n"
+       "[run]\nduration_ps = 2\nlog_every_ps = 0.5\nframes_every_ps = 1\n");
+  ASSERT_EQ(run("run s.toml --out here --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("run s.toml --out d --device c++ --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("run s.toml --out half --device c++ --steps 33 --quiet").code, 0);
+  const Outcome on = run("resume half --quiet");
+  ASSERT_EQ(on.code, 0) << on.err;
+  EXPECT_THAT(on.err, ::testing::Not(HasSubstr("note: it goes on")));
+  EXPECT_EQ(slurp(dir / "half/log.csv"), slurp(dir / "d/log.csv"));
+  EXPECT_TRUE(slurp(dir / "half/final.csv") == slurp(dir / "d/final.csv"));
+  EXPECT_THAT(slurp(dir / "d/manifest.json"), HasSubstr("\"device\": \"this processor, by the kernels of a device\""));
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("by the kernels of a device"));
+  const auto last = [&](const char* of) { return ropewalk::read_log((dir / of / "log.csv").string()).back(); };
+  EXPECT_NEAR(last("d")["twist_eV"], last("here")["twist_eV"], 1e-4 * last("here")["twist_eV"]);
+  EXPECT_NE(slurp(dir / "d/log.csv"), slurp(dir / "here/log.csv"));
+
+  const Outcome elsewhere = run("resume d --device none --until 2.5 --quiet");
+  EXPECT_EQ(elsewhere.code, 0) << elsewhere.err;
+  EXPECT_THAT(elsewhere.err, HasSubstr("note: it goes on without a device: last digits differ"));
+}
+
+TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
+  small_rope("s.toml", "duration_ps = 2\n", "");
+  EXPECT_THAT(run("run s.toml --out d --device c++").err, HasSubstr("this scene has \"paper\""));
+  for (const char* const name : {"opencl:nobody has this", "cuda", "opencl:"}) {
+    const Outcome o = run(std::string("run s.toml --out d --device '") + name + "'");
+    EXPECT_EQ(o.code, 2);
+    EXPECT_THAT(o.err, HasSubstr("--device: "));
+    EXPECT_THAT(o.err, HasSubstr("leave the option out"));
+    EXPECT_FALSE(std::filesystem::exists(dir / "d"));
+  }
+  spit(dir / "hot.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 20\n"
+       "[damping]\nbond_damping_per_ps = 0\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n[run]\nduration_ps = 1\n");
+  spit(dir / "still.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 16\n"
+       "[run]\nmode = \"relax\"\n");
+  EXPECT_THAT(run("run still.toml --out d --device c++").err, HasSubstr("--device: does not go with a relaxation"));
+  const Outcome hot = run("run hot.toml --out d --device c++");
+  EXPECT_EQ(hot.code, 2);
+  EXPECT_THAT(hot.err, HasSubstr("a device cannot run this scene: it has no thermostat"));
+}
+
+TEST_F(Cli, BenchOfADevice) {
+  const Outcome o = run("bench rope-91x50 --steps 2 --after 0 --device c++ --json");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("\"moved_by_the_host\": 182"));
+  EXPECT_THAT(run("bench rope-91x50 --device cuda").err, HasSubstr("no device is named"));
+}
+
 TEST_F(Cli, MixedTubesRunAndResume) {
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"

@@ -171,6 +171,13 @@ class RunningTest(FolderTest):
                 ropewalk.run(ROPE, "run", **wrong)
         self.assertFalse(os.path.exists("run"))
 
+    def test_a_device(self):
+        ropewalk.run(ROPE, "device", device="c++", steps=4)
+        self.assertIn("kernels of a device", ropewalk.open("device").manifest["device"])
+        ropewalk.resume("device", steps=6)
+        with self.assertRaisesRegex(ropewalk.InputError, "no device is named"):
+            ropewalk.run(ROPE, "none", device="abacus", steps=2)
+
     def test_threads_and_instructions_are_as_before(self):
         before = ropewalk.threads(), ropewalk._core.instructions()
         ropewalk.run(ROPE, "run", threads=before[0] + 1, steps=2)

@@ -80,7 +80,8 @@ class Frames:
 class RunOptions:
     def __init__(
         self, steps: int | None, until_ps: float | None, threads: int | None, on_limit: str, wall_time_s: float | None,
-        instructions: str, tell: Callable[[str], object], progress: Callable[[int, int, str], object] | None,
+        instructions: str, device: str, tell: Callable[[str], object],
+        progress: Callable[[int, int, str], object] | None,
     ) -> None: ...
 
 def run(scene: Scene, out: str, force: bool, options: RunOptions) -> None: ...

@@ -18,11 +18,12 @@ Progress = Callable[[int, int, str], object]
 
 def _options(
     steps: Optional[int], until_ps: Optional[float], threads: Optional[int], on_limit: str,
-    wall_time_s: Optional[float], instructions: Optional[str], progress: Optional[Progress],
+    wall_time_s: Optional[float], instructions: Optional[str], device: Optional[str],
+    progress: Optional[Progress],
 ) -> _core.RunOptions:
     return _core.RunOptions(
         steps=steps, until_ps=until_ps, threads=threads_at_most(threads), on_limit=on_limit, wall_time_s=wall_time_s,
-        instructions=instructions or "", tell=_log.warning, progress=progress,
+        instructions=instructions or "", device=device or "", tell=_log.warning, progress=progress,
     )
 
 
@@ -36,6 +37,7 @@ def run(
     on_limit: str = "warn",
     wall_time_s: Optional[float] = None,
     instructions: Optional[str] = None,
+    device: Optional[str] = None,
     force: bool = False,
     progress: Optional[Progress] = None,
 ) -> Run:
@@ -53,11 +55,12 @@ def run(
         on_limit: where a limit of [limits] is passed: "warn", "stop" or "refine" (it then goes on in OUT.fine)
         wall_time_s: stops with a checkpoint before the run has taken so long, s
         instructions: instruction set, for the same bits on other processors; it holds for the process during the run
+        device: moves the elements: "gpu", "opencl:TEXT", "c++"; None: this processor alone (no unit)
         force: replaces an earlier run in `out`
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
     _core.run(as_scene(scene)._to_run(), os.fspath(out), force,
-              _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, progress))
+              _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, device, progress))
     return Run(out)
 
 
@@ -70,6 +73,7 @@ def resume(
     on_limit: str = "warn",
     wall_time_s: Optional[float] = None,
     accept_changes: bool = False,
+    device: Optional[str] = None,
     progress: Optional[Progress] = None,
 ) -> Run:
     """Goes on with a run from its last checkpoint, bit for bit, as `ropewalk resume`. Times are in ps.
@@ -82,8 +86,9 @@ def resume(
         on_limit: where a limit of [limits] is passed: "warn", "stop" or "refine"
         wall_time_s: stops with a checkpoint before the run has taken so long, s
         accept_changes: goes on although scene, parameter set or program are not what the run was begun with
+        device: as of run(), "none": this processor alone; None: that of the run (no unit)
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
     _core.resume(os.fspath(directory), accept_changes,
-                 _options(steps, until_ps, threads, on_limit, wall_time_s, None, progress))
+                 _options(steps, until_ps, threads, on_limit, wall_time_s, None, device, progress))
     return Run(directory)

@@ -60,6 +60,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+  if (!m.device.empty()) add("device", m.device, "moved the elements that no load acts on");
 }
 
 // What a testing machine tells, of a rope that may come apart.

@@ -1,7 +1,8 @@
-// A processor that runs the kernels of kernels.h: one that OpenCL offers, or this one, by the same text read as C++.
-// Commands are done in the order in which they are given; only read() waits for them.
+// A processor that runs the kernels of kernels.h: one that OpenCL offers, or this one, by the same text read as
+// C++. Commands are done in the order in which they are given; only read() waits for them.
 //
-// OpenCL's library (libOpenCL.so.1) is opened when a device is asked for, so that the program needs it nowhere else.
+// OpenCL's library (libOpenCL.so.1) is opened when a device is asked for, so that the program needs it nowhere
+// else.
 #pragma once
 
 #include <array>
@@ -28,6 +29,8 @@ class Device {
   // Its content is not defined. Throws std::runtime_error where there is not so much.
   virtual Memory allocate(std::size_t bytes) = 0;
   virtual void write(const Memory& to, const void* from, std::size_t bytes) = 0;
+  // The same at some time before the next read(): until then `from` stays as it is.
+  virtual void write_later(const Memory& to, const void* from, std::size_t bytes) = 0;
   virtual void read(const Memory& from, void* to, std::size_t bytes) = 0;
   // Runs a kernel with the arguments that its text names, in their order: Memory for pointers, and values.
   template <class... A>

@@ -27,11 +27,13 @@ ElementType element_type(const TubeType& type) {
   const Anharmonic& h = k.anharmonic;
   ElementType out{};
   out.mass = type.mass, out.inertia = type.inertia, out.length = type.element_length;
-  out.stretch = k.stretch, out.bend = k.bend, out.twist = k.twist, out.shear_share = k.shear_share(type.element_length);
+  out.stretch = k.stretch, out.bend = k.bend, out.twist = k.twist,
+  out.shear_share = k.shear_share(type.element_length);
   out.radius = h.radius, out.coupling = h.coupling;
   out.e3 = h.e3, out.e2s = h.e2s, out.es2 = h.es2, out.s3 = h.s3, out.e4 = h.e4, out.e3s = h.e3s, out.e2s2 = h.e2s2,
   out.es3 = h.es3, out.s4 = h.s4, out.b4 = h.b4;
-  out.min_strain = h.min_strain, out.max_strain = h.max_strain, out.max_shear = h.max_shear, out.max_bend = h.max_bend;
+  out.min_strain = h.min_strain, out.max_strain = h.max_strain, out.max_shear = h.max_shear,
+  out.max_bend = h.max_bend;
   out.anharmonic = h.used ? 1 : 0;
   return out;
 }
@@ -47,8 +49,8 @@ LineTables line_tables(const LineLaw& law, int types, double unit) {
       for (int m = 0; m < TERMS; ++m) std::copy(table.d[m], table.d[m] + SEGMENTS, to.d + m * SEGMENTS);
       to.scale = table.scale, to.shift = table.shift, to.core2 = table.core2, to.cutoff2 = table.cutoff2;
       to.unit = table.unit, to.rest = table.contact + table.core, to.v1 = table.v1, to.v2 = table.v2;
-      to.weight = static_cast<float>(static_cast<double>(table.force) * pair.length_i / pair.nodes_i * pair.length_j /
-                                     pair.nodes_j);
+      to.weight = static_cast<float>(static_cast<double>(table.force) * pair.length_i / pair.nodes_i *
+                                     pair.length_j / pair.nodes_j);
       out.cutoff[i * types + j] = pair.density.cutoff();
       NodeRow& row = out.row[i];
       row.count = pair.nodes_i;
@@ -80,7 +82,8 @@ std::vector<int> sums_of(const std::vector<int>& counts) {
 }  // namespace
 
 std::string not_for_a_device(const Topology& topology, const Interaction& in) {
-  if (in.law && !law_of(in)) return "it has the line law alone as contact, and this scene has \"" + in.law->name() + "\"";
+  if (in.law && !law_of(in))
+    return "it has the line law alone as contact, and this scene has \"" + in.law->name() + "\"";
   if (!in.terms.empty()) return "it cannot compute \"" + in.terms.front()->name() + "\"";
   if (in.damping.local > 0) return "it cannot compute damping.pfc_local";
   if (in.law && in.precision == Interaction::Precision::full) return "its contact is in single precision";
@@ -107,7 +110,6 @@ DeviceStepper::DeviceStepper(const Topology& topology, const Interaction& intera
   const auto n = static_cast<std::size_t>(stride_), quad = 16 * n, column = sizeof(double) * n;
   motion_ = allocate(13 * column), force_ = allocate(6 * column), bond_ = allocate(10 * column);
   reference_ = allocate(6 * column), told_ = allocate(TOLD * column);
-  summary_ = allocate(static_cast<std::size_t>(SUMMARY * groups_) * sizeof(double));
   for (Device::Memory* of_four : {&centre_, &axis_, &velocity_, &spin_, &contact_force_, &contact_torque_})
     *of_four = allocate(quad);
   const std::vector<float> nothing(4 * n, 0.0F);  // where there is no contact
@@ -120,9 +122,9 @@ DeviceStepper::DeviceStepper(const Topology& topology, const Interaction& intera
   }
   const auto buckets = static_cast<std::size_t>(buckets_);
   last_ = send(last_excluded(topology, interaction));
-  cell_ = allocate(quad), member_ = allocate(n * sizeof(int)), counts_ = allocate(n * sizeof(int)), begin_ = allocate((n + 1) * sizeof(int));
+  cell_ = allocate(quad), member_ = allocate(n * sizeof(int)), counts_ = allocate(n * sizeof(int)),
+  begin_ = allocate((n + 1) * sizeof(int));
   first_ = allocate((buckets + 1) * sizeof(int)), next_ = allocate(buckets * sizeof(int));
-  sums_.resize(static_cast<std::size_t>(SUMMARY * groups_));
 }
 
 Device::Memory DeviceStepper::allocate(std::size_t bytes) {
@@ -138,20 +140,22 @@ Device::Memory DeviceStepper::send(const std::vector<T>& numbers) {
   return memory;
 }
 
-void DeviceStepper::take(const State& state, const Forces& forces, std::vector<int> hosted, const NeighbourList& list) {
+void DeviceStepper::take(const State& state, const Forces& forces, std::vector<int> hosted,
+                         const NeighbourList& list) {
   ROPEWALK_EXPECTS(static_cast<int>(state.size()) == elements_ && std::is_sorted(hosted.begin(), hosted.end()));
   hosted_ = std::move(hosted);
   rows_.resize(13 * std::max<std::size_t>(hosted_.size(), 1));
   std::vector<int> kind(static_cast<std::size_t>(elements_), 0);
   for (int t = 0; t < topology_.tubes(); ++t)
     for (int i = topology_.tube_begin[t]; i < topology_.tube_begin[t + 1]; ++i)
-      kind[static_cast<std::size_t>(i)] =
-          topology_.tube_type[static_cast<std::size_t>(t)] + (i + 1 < topology_.tube_begin[t + 1] ? KIND_BONDED : 0);
+      kind[static_cast<std::size_t>(i)] = topology_.tube_type[static_cast<std::size_t>(t)] +
+                                          (i + 1 < topology_.tube_begin[t + 1] ? KIND_BONDED : 0);
   for (const int i : hosted_) kind[static_cast<std::size_t>(i)] |= KIND_HOSTED;
   kind_ = send(kind);
   which_ = send(hosted_);
   hosted_motion_ = send(rows_);
-  hosted_force_ = send(std::vector<double>(6 * std::max<std::size_t>(hosted_.size(), 1)));
+  sums_.resize(static_cast<std::size_t>(SUMMARY * groups_) + 6 * hosted_.size());
+  summary_ = send(sums_);
   const auto columns = [&](const std::vector<const Column*>& all, const Device::Memory& to) {
     std::vector<double> numbers(all.size() * static_cast<std::size_t>(stride_));
     for (std::size_t c = 0; c < all.size(); ++c)
@@ -171,7 +175,8 @@ void DeviceStepper::take(const State& state, const Forces& forces, std::vector<i
 void DeviceStepper::use_list(const NeighbourList& list) {
   const LineLaw* const law = law_of(interaction_);
   unit_ = list.coordinate_unit();
-  if (law && !tables_) tables_ = send(std::vector<LineTables>{line_tables(*law, static_cast<int>(topology_.types.size()), unit_)});
+  if (law && !tables_)
+    tables_ = send(std::vector<LineTables>{line_tables(*law, static_cast<int>(topology_.types.size()), unit_)});
   std::vector<double> numbers(6 * static_cast<std::size_t>(stride_));
   const Vec3Array &x = list.reference(), &n = list.reference_axis();
   const Column* const all[] = {&x.x, &x.y, &x.z, &n.x, &n.y, &n.z};
@@ -195,8 +200,8 @@ void DeviceStepper::find_neighbours(const NeighbourList& list) {
   device_->write(next_, sum.data(), buckets * sizeof(int));
   device_->run("fill_cells", groups_, cell_, elements_, next_, member_);
   const auto find = [&](int fill, const Device::Memory& out) {
-    device_->run("find_neighbours", groups_, reference_, kind_, types_, tables_, last_, cell_, first_, member_, reach,
-                 elements_, stride_, buckets_, fill, begin_, out);
+    device_->run("find_neighbours", groups_, reference_, kind_, types_, tables_, last_, cell_, first_, member_,
+                 reach, elements_, stride_, buckets_, fill, begin_, out);
   };
   find(0, counts_);
   count.resize(n);
@@ -228,19 +233,19 @@ void DeviceStepper::drift(double dt, const State& s, const NeighbourList& list) 
   const int count = static_cast<int>(hosted_.size());
   for (std::size_t k = 0; k < hosted_.size(); ++k) {
     const auto i = static_cast<std::size_t>(hosted_[k]);
-    const double numbers[] = {s.position.x[i],         s.position.y[i],         s.position.z[i],
-                              s.orientation.w[i],      s.orientation.x[i],      s.orientation.y[i],
-                              s.orientation.z[i],      s.velocity.x[i],         s.velocity.y[i],
-                              s.velocity.z[i],         s.angular_velocity.x[i], s.angular_velocity.y[i],
+    const double numbers[] = {s.position.x[i],        s.position.y[i],         s.position.z[i],
+                              s.orientation.w[i],     s.orientation.x[i],      s.orientation.y[i],
+                              s.orientation.z[i],     s.velocity.x[i],         s.velocity.y[i],
+                              s.velocity.z[i],        s.angular_velocity.x[i], s.angular_velocity.y[i],
                               s.angular_velocity.z[i]};
     std::copy(std::begin(numbers), std::end(numbers), rows_.begin() + static_cast<std::ptrdiff_t>(13 * k));
   }
-  device_->write(hosted_motion_, rows_.data(), 13 * hosted_.size() * sizeof(double));
+  device_->write_later(hosted_motion_, rows_.data(), 13 * hosted_.size() * sizeof(double));
   device_->run("put_motion", (count + GROUP - 1) / GROUP, which_, hosted_motion_, count, stride_, motion_);
   const TwistOfAll& of = list.common_twist();
   const TwistSince twist{of.x, of.y, of.middle, of.sine, of.slope, TwistOfAll::most, list.lever};
-  device_->run("drift", groups_, motion_, kind_, reference_, twist, dt, 1 / unit_, elements_, stride_, centre_, axis_,
-               velocity_, spin_, told_);
+  device_->run("drift", groups_, motion_, kind_, reference_, twist, dt, 1 / unit_, elements_, stride_, centre_,
+               axis_, velocity_, spin_, told_);
 }
 
 DeviceStepper::Told DeviceStepper::compute(Forces& forces) {
@@ -259,14 +264,14 @@ DeviceStepper::Told DeviceStepper::compute(Forces& forces) {
   }
   device_->run("bonds", groups_, motion_, kind_, types_, interaction_.damping.bond.rate, elements_, stride_, bond_,
                told_);
-  device_->run("collect", groups_, bond_, kind_, contact_force_, contact_torque_, elements_, stride_, force_, told_);
+  device_->run("collect", groups_, bond_, kind_, contact_force_, contact_torque_, elements_, stride_, force_,
+               told_);
   device_->run("summary", groups_, told_, elements_, stride_, groups_, summary_);
-  device_->run("get_force", (count + GROUP - 1) / GROUP, force_, which_, count, stride_, hosted_force_);
-
+  const int before = SUMMARY * groups_;
+  device_->run("get_force", (count + GROUP - 1) / GROUP, force_, which_, count, stride_, before, summary_);
   device_->read(summary_, sums_.data(), sums_.size() * sizeof(double));
-  device_->read(hosted_force_, rows_.data(), 6 * hosted_.size() * sizeof(double));
   for (std::size_t k = 0; k < hosted_.size(); ++k) {
-    const double* const f = rows_.data() + 6 * k;
+    const double* const f = sums_.data() + before + 6 * k;
     forces.force.set(static_cast<std::size_t>(hosted_[k]), {f[0], f[1], f[2]});
     forces.torque.set(static_cast<std::size_t>(hosted_[k]), {f[3], f[4], f[5]});
   }
@@ -308,9 +313,9 @@ void DeviceStepper::give(State& s, Forces& forces) const {
       for (std::size_t i = 0; i < here.size(); ++i)
         if (!here[i]) (*all[c])[i] = numbers[c * n + i];
   };
-  columns(motion, {&s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
-                   &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
-                   &s.angular_velocity.y, &s.angular_velocity.z});
+  columns(motion, {&s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x,
+                   &s.orientation.y, &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z,
+                   &s.angular_velocity.x, &s.angular_velocity.y, &s.angular_velocity.z});
   columns(force, {&forces.force.x, &forces.force.y, &forces.force.z, &forces.torque.x, &forces.torque.y,
                   &forces.torque.z});
 }

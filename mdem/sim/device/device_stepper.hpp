@@ -1,6 +1,6 @@
-// The elements of a scene on a device: it moves those that no load acts on. The host moves the few others itself, with
-// the same loads, constraints and gauges as without a device, and sends them in every step. What the device does not
-// know it refuses by name.
+// The elements of a scene on a device: it moves those that no load acts on. The host moves the few others itself,
+// with the same loads, constraints and gauges as without a device, and sends them in every step. What the device
+// does not know it refuses by name.
 //
 // Contact in floats, on coordinates modulo 2^32; motion and bonds in doubles. Bits do not depend on the device.
 #pragma once
@@ -23,8 +23,8 @@ std::string not_for_a_device(const Topology& topology, const Interaction& intera
 
 class DeviceStepper {
  public:
-  // Of all elements in one step: their velocities before it, how far they are from where the list was built, and what
-  // the damping does.
+  // Of all elements in one step: their velocities before it, how far they are from where the list was built, and
+  // what the damping does.
   struct Told {
     Fastest fastest;
     Change change;
@@ -43,7 +43,7 @@ class DeviceStepper {
   // Finds the neighbours where the list begins (NeighbourList::begin): again after each begin.
   void use_list(const NeighbourList& list);
   // The neighbours of each element that its contact or its viscosity may reach until then: of element i those from
-  // begin[i] to begin[i + 1], in rising order.
+  // begin[i] to begin[i + 1].
   struct Neighbours {
     std::vector<int> begin, neighbour;
   };
@@ -76,11 +76,12 @@ class DeviceStepper {
   std::size_t bytes_ = 0;
   int elements_ = 0, stride_ = 0, groups_ = 0, buckets_ = 0;
   std::size_t listed_ = 0, room_ = 0;  // neighbours of all elements
-  double unit_ = 1;  // nm, of the coordinates
+  double unit_ = 1;                    // nm, of the coordinates
   std::vector<int> hosted_;
-  std::vector<double> rows_, sums_;
-  Device::Memory kind_, types_, tables_, motion_, force_, bond_, reference_, told_, summary_, last_, cell_, first_, next_, member_, counts_, begin_, list_, centre_,
-      axis_, velocity_, spin_, contact_force_, contact_torque_, which_, hosted_motion_, hosted_force_;
+  std::vector<double> rows_, sums_;  // sent and read in every step
+  Device::Memory kind_, types_, tables_, motion_, force_, bond_, reference_, told_, summary_, last_, cell_, first_,
+      next_, member_, counts_, begin_, list_, centre_, axis_, velocity_, spin_, contact_force_, contact_torque_,
+      which_, hosted_motion_;
 };
 
 }  // namespace ropewalk

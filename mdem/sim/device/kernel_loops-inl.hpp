@@ -25,11 +25,18 @@ constexpr HostKernel host_kernel(const char* name) {
   return {name, Called<kernel>::arguments, Called<kernel>::run};
 }
 
-constexpr HostKernel all_kernels[] = {
-    host_kernel<kick>("kick"),           host_kernel<put_motion>("put_motion"), host_kernel<drift>("drift"),
-    host_kernel<line_contact>("line_contact"), host_kernel<viscosity>("viscosity"), host_kernel<bonds>("bonds"),
-    host_kernel<count_cells>("count_cells"), host_kernel<fill_cells>("fill_cells"),
-    host_kernel<find_neighbours>("find_neighbours"), host_kernel<collect>("collect"),     host_kernel<summary>("summary"),       host_kernel<get_force>("get_force")};
+constexpr HostKernel all_kernels[] = {host_kernel<kick>("kick"),
+                                      host_kernel<put_motion>("put_motion"),
+                                      host_kernel<drift>("drift"),
+                                      host_kernel<line_contact>("line_contact"),
+                                      host_kernel<viscosity>("viscosity"),
+                                      host_kernel<bonds>("bonds"),
+                                      host_kernel<count_cells>("count_cells"),
+                                      host_kernel<fill_cells>("fill_cells"),
+                                      host_kernel<find_neighbours>("find_neighbours"),
+                                      host_kernel<collect>("collect"),
+                                      host_kernel<summary>("summary"),
+                                      host_kernel<get_force>("get_force")};
 
 const HostKernel* find_kernel(const char* name) {
   for (const HostKernel& kernel : all_kernels)

@@ -163,29 +163,34 @@ KERNEL(fill_cells, GLOBAL const int4* cell, int elements, GLOBAL int* next, GLOB
   }
 }
 
-// Whether the centres of i and j > i are within reach of the viscosity, or a node of j within that of the nodes of i,
-// before the list is built again.
+// Whether elements i and j > i may act on each other before the list is built again, because a node of j comes within
+// reach of the nodes of i, or because the centres come within that of the viscosity (0: no), and whether they nearly do
+// so now (2).
 FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
                        GLOBAL const LineTables* tables, ListReach reach, int stride, int i, int j) {
   const Vec apart = vec_difference(vec_at(reference, 0, stride, j), vec_at(reference, 0, stride, i));
   const double square = vec_norm2(apart);
   if (!(square < reach.centres * reach.centres)) return 0;
-  if (square < reach.viscosity * reach.viscosity) return 1;
   const int type_i = kind[i] & KIND_TYPE, type_j = kind[j] & KIND_TYPE;
   const int nodes_i = tables->row[type_i].count, nodes_j = tables->row[type_j].count;
   const Vec n_i = vec_at(reference, 3, stride, i), n_j = vec_at(reference, 3, stride, j);
   const double rim = ((nodes_i - 0.5) / nodes_i - 0.5) * types[type_i].length;
-  const double within_reach = tables->cutoff[type_i * TYPES + type_j] + reach.skin;
+  double least = 1e300;
   for (int l = 0; l < nodes_j; ++l) {
     const Vec d = vec_sum(apart, vec_scaled(((l + 0.5) / nodes_j - 0.5) * types[type_j].length, n_j));
     const double along = within(vec_dot(d, n_i), -rim, rim);
-    if (vec_norm2(vec_difference(d, vec_scaled(along, n_i))) < within_reach * within_reach) return 1;
+    least = smaller(least, vec_norm2(vec_difference(d, vec_scaled(along, n_i))));
   }
-  return 0;
+  const double cutoff = tables->cutoff[type_i * TYPES + type_j];
+  const double listed = cutoff + reach.skin, near = cutoff + smaller(reach.skin, NEAR);
+  if (least < near * near) return 2;
+  return least < listed * listed || square < reach.viscosity * reach.viscosity;
 }
 
-// Counts the neighbours of each element (fill = 0), or lists them from begin[i] on in rising order (fill = 1). Parts of
-// one tube up to element last[i] are none. `first`: of the members of each bucket.
+// Counts the neighbours of each element (fill = 0), or lists them from begin[i] to begin[i + 1] (fill = 1): first those
+// that nearly touch it, then the others, both in rising order. So the work items of a group, which go through several
+// lists side by side, pass over the others together. Parts of one tube up to element last[i] are no neighbours.
+// `first`: of the members of each bucket.
 KERNEL(find_neighbours, GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
        GLOBAL const LineTables* tables, GLOBAL const int* last, GLOBAL const int4* cell, GLOBAL const int* first,
        GLOBAL const int* member, ListReach reach, int elements, int stride, int buckets, int fill,
@@ -194,26 +199,30 @@ KERNEL(find_neighbours, GLOBAL const double* reference, GLOBAL const int* kind, 
     const int i = GROUP_NUMBER * GROUP + t;
     if (i < elements) {
       const int4 own = cell[i];
-      const int from = fill ? begin[i] : 0;
-      int found = 0;
-      for (int near = 0; near < 27; ++near) {
-        const int x = own.x + near % 3 - 1, y = own.y + near / 3 % 3 - 1, z = own.z + near / 9 - 1;
+      const int from = fill ? begin[i] : 0, end = fill ? begin[i + 1] : 0;
+      int near = 0, far_away = 0;
+      for (int cube = 0; cube < 27; ++cube) {
+        const int x = own.x + cube % 3 - 1, y = own.y + cube / 3 % 3 - 1, z = own.z + cube / 9 - 1;
         const int bucket = BUCKET(x, y, z, buckets);
         for (int k = first[bucket]; k < first[bucket + 1]; ++k) {
           const int j = member[k];
           const int4 other = cell[j];
           if (other.x != x || other.y != y || other.z != z || j == i) continue;
           const int low = i < j ? i : j, high = i < j ? j : i;
-          if (high <= last[low] || !may_touch(reference, kind, types, tables, reach, stride, low, high)) continue;
-          if (fill) {
-            int at = from + found;
-            for (; at > from && out[at - 1] > j; --at) out[at] = out[at - 1];
-            out[at] = j;
+          const int touches =
+              high <= last[low] ? 0 : may_touch(reference, kind, types, tables, reach, stride, low, high);
+          if (touches == 2) {
+            int at = from + near++;
+            for (; fill && at > from && out[at - 1] > j; --at) out[at] = out[at - 1];
+            if (fill) out[at] = j;
+          } else if (touches) {
+            int at = end - 1 - far_away++;
+            for (; fill && at + 1 < end && out[at + 1] < j; ++at) out[at] = out[at + 1];
+            if (fill) out[at] = j;
           }
-          ++found;
         }
       }
-      if (!fill) out[i] = found;
+      if (!fill) out[i] = near + far_away;
     }
   }
 }
@@ -526,12 +535,12 @@ KERNEL(summary, GLOBAL const double* told, int elements, int stride, int groups,
   }
 }
 
-// Rows of 6 numbers from the columns of force.
-KERNEL(get_force, GLOBAL const double* force, GLOBAL const int* which, int count, int stride,
+// Rows of 6 numbers from the columns of force, behind `before` numbers.
+KERNEL(get_force, GLOBAL const double* force, GLOBAL const int* which, int count, int stride, int before,
        GLOBAL double* rows) {
   FOR_ITEMS(t) {
     const int k = GROUP_NUMBER * GROUP + t;
     if (k < count)
-      for (int c = 0; c < 6; ++c) rows[6 * k + c] = force[c * stride + which[k]];
+      for (int c = 0; c < 6; ++c) rows[before + 6 * k + c] = force[c * stride + which[k]];
   }
 }

@@ -1,6 +1,6 @@
-#include "sim/device/device.hpp"
-
 #include <stdexcept>
+
+#include "sim/device/device.hpp"
 
 #ifdef ROPEWALK_HAS_OPENCL_HEADERS
 #define CL_TARGET_OPENCL_VERSION 120
@@ -26,7 +26,7 @@ struct OpenCl {
   F* function(F*, const char* name) const {
     return library ? reinterpret_cast<F*>(dlsym(library, name)) : nullptr;
   }
-#define ROPEWALK_OPENCL(name) decltype(&cl##name) const name = function(decltype(&cl##name)(nullptr), "cl" #name)
+#define ROPEWALK_OPENCL(name) decltype(&cl##name) const name = function(decltype (&cl##name)(nullptr), "cl" #name)
   ROPEWALK_OPENCL(GetPlatformIDs);
   ROPEWALK_OPENCL(GetPlatformInfo);
   ROPEWALK_OPENCL(GetDeviceIDs);
@@ -47,10 +47,9 @@ struct OpenCl {
   ROPEWALK_OPENCL(EnqueueWriteBuffer);
   ROPEWALK_OPENCL(EnqueueReadBuffer);
   ROPEWALK_OPENCL(EnqueueNDRangeKernel);
-  ROPEWALK_OPENCL(Flush);
 #undef ROPEWALK_OPENCL
 
-  bool there() const { return library && GetPlatformIDs && EnqueueNDRangeKernel && Flush; }
+  bool there() const { return library && GetPlatformIDs && EnqueueNDRangeKernel; }
 };
 
 const OpenCl& cl() {
@@ -62,8 +61,8 @@ void check(cl_int code, const char* what) {
   if (code == CL_SUCCESS) return;
   const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
                       code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
-  throw std::runtime_error(std::string("the device failed: ") + what + " gave OpenCL's error " + std::to_string(code) +
-                           (memory ? ": it has too little memory" : ""));
+  throw std::runtime_error(std::string("the device failed: ") + what + " gave OpenCL's error " +
+                           std::to_string(code) + (memory ? ": it has too little memory" : ""));
 }
 
 // `get(size, value, size_needed)` of one of OpenCL's functions for names.
@@ -102,7 +101,8 @@ std::vector<Found> all_devices() {
   for (const cl_platform_id platform : platforms) {
     if (cl().GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
     std::vector<cl_device_id> devices(count);
-    check(cl().GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr), "the search for devices");
+    check(cl().GetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, devices.data(), nullptr),
+          "the search for devices");
     for (const cl_device_id device : devices) {
       cl_device_type type = 0;
       check(cl().GetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, nullptr), "the type of a device");
@@ -133,8 +133,9 @@ Found choose(const std::string& part, bool gpu_only) {
       throw std::invalid_argument("\"" + f.name + "\" has no numbers of double precision (cl_khr_fp64)");
     return f;
   }
-  throw std::invalid_argument((gpu_only ? std::string("no GPU was found") : "no device has \"" + part + "\" in its name") +
-                              "; " + names_of(all));
+  throw std::invalid_argument(
+      (gpu_only ? std::string("no GPU was found") : "no device has \"" + part + "\" in its name") + "; " +
+      names_of(all));
 }
 
 class OpenClDevice : public Device {
@@ -146,7 +147,8 @@ class OpenClDevice : public Device {
     queue_ = {cl().CreateCommandQueue(context_.get(), found.device, 0, &code), cl().ReleaseCommandQueue};
     check(code, "a queue");
     std::ostringstream source;
-    source << "#define NODES " << shape.nodes << "\n#define TYPES " << shape.types << "\n#define LOCAL_TYPES TYPES\n"
+    source << "#define NODES " << shape.nodes << "\n#define TYPES " << shape.types
+           << "\n#define LOCAL_TYPES TYPES\n"
            << kernel_types_text << kernel_dialect_text << kernel_text;
     const std::string written = source.str();
     const char* begin = written.c_str();
@@ -154,7 +156,8 @@ class OpenClDevice : public Device {
     program_ = {cl().CreateProgramWithSource(context_.get(), 1, &begin, &length, &code), cl().ReleaseProgram};
     check(code, "the kernels");
     cl_device_fp_config floats = 0;
-    check(cl().GetDeviceInfo(found.device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr), "its floats");
+    check(cl().GetDeviceInfo(found.device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr),
+          "its floats");
     const bool rounds = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     const char* const options = rounds ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" : "-cl-std=CL1.2";
     if (cl().BuildProgram(program_.get(), 1, &found.device, options, nullptr, nullptr) != CL_SUCCESS) {
@@ -174,12 +177,9 @@ class OpenClDevice : public Device {
     check(code, "memory");
     return {memory, [](void* m) { cl().ReleaseMemObject(static_cast<cl_mem>(m)); }};
   }
-  // Blocking, since `from` may be gone afterwards: the copy waits for the kernels before it.
-  void write(const Memory& to, const void* from, std::size_t bytes) override {
-    if (bytes == 0) return;
-    check(cl().EnqueueWriteBuffer(queue_.get(), static_cast<cl_mem>(to.get()), CL_TRUE, 0, bytes, from, 0, nullptr,
-                                  nullptr),
-          "a copy to it");
+  void write(const Memory& to, const void* from, std::size_t bytes) override { write(to, from, bytes, CL_TRUE); }
+  void write_later(const Memory& to, const void* from, std::size_t bytes) override {
+    write(to, from, bytes, CL_FALSE);
   }
   void read(const Memory& from, void* to, std::size_t bytes) override {
     if (bytes == 0) return;
@@ -201,6 +201,13 @@ class OpenClDevice : public Device {
  private:
   template <class T>
   using Held = std::shared_ptr<std::remove_pointer_t<T>>;
+
+  void write(const Memory& to, const void* from, std::size_t bytes, cl_bool waits) {
+    if (bytes == 0) return;
+    check(cl().EnqueueWriteBuffer(queue_.get(), static_cast<cl_mem>(to.get()), waits, 0, bytes, from, 0, nullptr,
+                                  nullptr),
+          "a copy to it");
+  }
 
   cl_kernel kernel_of(const char* name) {
     Held<cl_kernel>& kernel = kernels_[name];

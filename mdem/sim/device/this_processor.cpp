@@ -9,10 +9,9 @@
 
 #include "model/contract.hpp"
 #include "sim/device/device.hpp"
+#include "sim/device/dialect.h"
 #include "sim/device/types.h"
 #include "sim/threads/vector_unit.hpp"
-
-#include "sim/device/dialect.h"
 
 namespace ropewalk {
 namespace {
@@ -38,7 +37,9 @@ float float_of(int bits) {
 int whole(double x) {
   constexpr double most = 0x1p62;
   const double rounded = std::rint(x);
-  return rounded > -most && rounded < most ? static_cast<int>(static_cast<unsigned>(static_cast<std::int64_t>(rounded))) : 0;
+  return rounded > -most && rounded < most
+             ? static_cast<int>(static_cast<unsigned>(static_cast<std::int64_t>(rounded)))
+             : 0;
 }
 
 struct HostKernel {
@@ -74,6 +75,7 @@ class ThisProcessor : public Device {
   void write(const Memory& to, const void* from, std::size_t bytes) override {
     if (bytes > 0) std::memcpy(to.get(), from, bytes);
   }
+  void write_later(const Memory& to, const void* from, std::size_t bytes) override { write(to, from, bytes); }
   void read(const Memory& from, void* to, std::size_t bytes) override {
     if (bytes > 0) std::memcpy(to, from.get(), bytes);
   }

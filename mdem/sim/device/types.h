@@ -52,6 +52,8 @@ typedef struct {
   double centres, viscosity, skin;
 } ListReach;
 
+#define NEAR 0.05  // nm beyond the cutoff, of neighbours that stand first in the list
+
 #define BUCKET(x, y, z, buckets) \
   ((int)(((unsigned)(x) * 73856093u ^ (unsigned)(y) * 19349663u ^ (unsigned)(z) * 83492791u) & (unsigned)((buckets) - 1)))
 
