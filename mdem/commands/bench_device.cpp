@@ -11,6 +11,7 @@
 #include "model/error.hpp"
 #include "run/threads.hpp"
 #include "scene/prepare.hpp"
+#include "sim/device/device_stepper.hpp"
 
 namespace ropewalk {
 namespace {

@@ -179,9 +179,7 @@ double TubePressures::of(int tube) const {
   constexpr int most = 8;  // elements
   const int n = topology_.length_of(tube), count = std::min(most, n - 2 * (n / 3)), from = (n - count) / 2;
   // Tubes in line with it do not touch its side.
-  int first = tube, last = tube;
-  while (!topology_.begins_strand(first)) --first;
-  while (!topology_.ends_strand(last)) ++last;
+  const auto [first, last] = topology_.strand_of(tube);
   const int in_line_from = topology_.tube_begin[static_cast<std::size_t>(first)],
             in_line_to = topology_.tube_begin[static_cast<std::size_t>(last) + 1];
   double virial = 0;

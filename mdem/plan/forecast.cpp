@@ -59,9 +59,8 @@ std::optional<Turn> turn_of(const Scene& scene, const Prepared& p) {
 
 // By length: 1 where a strand is one tube.
 double part_of_strand(const Topology& topology, int tube) {
-  int first = tube, last = tube, elements = 0;
-  while (!topology.begins_strand(first)) --first;
-  while (!topology.ends_strand(last)) ++last;
+  const auto [first, last] = topology.strand_of(tube);
+  int elements = 0;
   for (int t = first; t <= last; ++t) elements += topology.length_of(t);
   return static_cast<double>(topology.length_of(tube)) / elements;
 }

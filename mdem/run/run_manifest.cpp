@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include "sim/contact/line/engine.hpp"
+#include "sim/device/device_stepper.hpp"
 #include "version.hpp"
 
 namespace ropewalk {

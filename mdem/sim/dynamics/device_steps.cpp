@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/dynamics/simulation.hpp"
 
@@ -15,7 +16,7 @@ void Simulation::use_device(const std::string& name) {
   if (stepping_.runge_kutta)
     throw std::invalid_argument("a device cannot run this scene: it has no rotations by Runge-Kutta");
   device_ = {};
-  device_.stepper = std::make_unique<DeviceStepper>(topology_, interaction_, name);
+  device_.stepper = std::make_shared<DeviceStepper>(topology_, interaction_, name);
 }
 
 // The loads act on few elements, as a rule; and the gauges are on the ends, which the host must follow.

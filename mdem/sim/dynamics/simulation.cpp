@@ -12,6 +12,7 @@
 #include "model/contract.hpp"
 #include "model/error.hpp"
 #include "sim/contact/shared/wrapped.hpp"
+#include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/dynamics/verlet.hpp"

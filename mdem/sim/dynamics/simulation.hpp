@@ -15,7 +15,6 @@
 #include "sim/dynamics/loads.hpp"
 #include "sim/dynamics/relax_goal.hpp"
 #include "sim/dynamics/step_limit.hpp"
-#include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/stepping.hpp"
 #include "sim/forces/forces.hpp"
 #include "sim/neighbours/neighbours.hpp"
@@ -25,6 +24,7 @@
 
 namespace ropewalk {
 
+class DeviceStepper;
 struct MotionBound;
 
 // Parts of the limit that are used when the step is not typed. A cold rope hardly moves in the waves that set the
@@ -207,7 +207,7 @@ class Simulation {
 
   // A copy of a simulation has no device. It is made where the state is here as well.
   struct OwnDevice {
-    std::unique_ptr<DeviceStepper> stepper;
+    std::shared_ptr<DeviceStepper> stepper;  // its own
     bool goes_on = false;           // from where it is, with the loads and gauges of now
     bool ahead = false;             // its state is newer than the one here
     bool energies_missing = false;  // those of its state are asked for and not computed yet

@@ -63,6 +63,13 @@ std::pair<int, int> Topology::strands_of_rope(int rope) const {
   return {rope_begin[static_cast<std::size_t>(rope)], rope_begin[static_cast<std::size_t>(rope) + 1]};
 }
 
+std::pair<int, int> Topology::strand_of(int tube) const {
+  int first = tube, last = tube;
+  while (!begins_strand(first)) --first;
+  while (!ends_strand(last)) ++last;
+  return {first, last};
+}
+
 Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   ROPEWALK_EXPECTS(static_cast<int>(flags.size()) == topology.elements() && !topology.part);
   Topology cut;

@@ -145,6 +145,8 @@ struct Topology {
   // Whether the first end of a tube, or its last one, is that of its strand.
   bool begins_strand(int tube) const;
   bool ends_strand(int tube) const;
+  // The first and the last tube of the strand of a tube.
+  std::pair<int, int> strand_of(int tube) const;
   int length_of(int tube) const {
     ROPEWALK_EXPECTS(tube >= 0 && tube < tubes());
     return tube_begin[tube + 1] - tube_begin[tube];
