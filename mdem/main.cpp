@@ -98,7 +98,7 @@ void add_instructions(CLI::App* c, std::string& name, const char* of, const std:
 
 void add_device(CLI::App* c, std::string& name, const std::string& by_default) {
   c->add_option("--device", name,
-                "Device that moves the elements (a GPU pays from some 20 000 elements on): gpu, opencl:TEXT for an OpenCL "
+                "Device that moves the elements (a GPU pays, by estimate, from 20 000 elements on): gpu, opencl:TEXT for an OpenCL "
                 "device with TEXT in its name, c++ for its kernels on this processor, or none [default: " +
                     by_default + "]");
 }

@@ -3,8 +3,8 @@
 #include <omp.h>
 
 #include <cmath>
+#include <exception>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "bench/bench_scenes.hpp"
 #include "commands/commands.hpp"
@@ -12,6 +12,7 @@
 #include "run/threads.hpp"
 #include "scene/prepare.hpp"
 #include "sim/device/device_stepper.hpp"
+#include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
 namespace {
@@ -19,8 +20,8 @@ namespace {
 void use_device(Simulation& simulation, const std::string& name) {
   try {
     simulation.use_device(name);
-  } catch (const std::invalid_argument& e) {
-    throw InputError({"", 0, "--device"}, e.what(), "leave the option out to measure this processor");
+  } catch (const std::exception& e) {
+    throw InputError({"", 0, "--device"}, e.what(), "give --device none to measure this processor");
   }
 }
 
@@ -29,7 +30,10 @@ void use_device(Simulation& simulation, const std::string& name) {
 int bench_device(const BenchArguments& a) {
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
+  if (a.threads.size() > 1)
+    throw InputError({"", 0, "--threads"}, "is a list, and a device is measured once", "give one number");
   use_threads(a.threads.front());
+  use_instructions(a.instructions);
   const double after = a.after < 0 ? bench_after(a.scene) : a.after;
   Simulation simulation = start(scene, prepared);
   use_device(simulation, a.device);
@@ -63,7 +67,7 @@ int bench_device(const BenchArguments& a) {
   fmt::print("{:9.2f} ns per element-step, {:.2f} of them for {} lists, which {} thread{} of the host made\n",
              seconds * each, of_lists * each, simulation.list().builds() - lists, omp_get_max_threads(),
              omp_get_max_threads() == 1 ? "" : "s");
-  fmt::print("{:9.3f} ms a step; {:.0f} bytes per element on the device\n",
+  fmt::print("{:9.3f} ms a step; {:.0f} bytes per element on the device, about\n",
              seconds * 1e3 / static_cast<double>(a.steps), static_cast<double>(device.bytes()) / n);
   fmt::print("{:9.2f} s of wall time per simulated ns\n",
              seconds / static_cast<double>(a.steps) / prepared.time_step * 1e3);

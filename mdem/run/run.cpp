@@ -67,8 +67,8 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
   r.beyond = beyond_limits(parts_.limits.records());
   if (!parts_.moving.relaxes()) r.damping = damping_words(parts_.last_row);
   r.missing = parts_.files.missing();
-  r.steps = parts_.state().step;
-  r.time_ps = parts_.state().time;
+  r.steps = parts_.step();
+  r.time_ps = parts_.moving.simulation.time();
   r.wall_seconds = parts_.clock.seconds();
   r.relaxes = parts_.moving.relaxes();
   return r;
@@ -99,7 +99,7 @@ RunResult Run::stopped_at_limit() {
 
 RunResult Run::stopped(RunEnd end) {
   parts_.checkpoints.save_end();
-  const std::string reason = fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.state().time);
+  const std::string reason = fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
   parts_.files.try_again();
   return result(end, reason);

@@ -1,6 +1,6 @@
 #include "run/run_parts.hpp"
 
-#include <stdexcept>
+#include <exception>
 
 #include "model/error.hpp"
 
@@ -24,12 +24,12 @@ void RunParts::use_device() {
   if (name.empty() || name == no_device) return;
   if (moving.relaxes())
     throw InputError({"", 0, "--device"}, "does not go with a relaxation, which this processor does",
-                     "leave the option out");
+                     "give --device none");
   try {
     moving.simulation.use_device(name);
     schedule.look_rarely();
-  } catch (const std::invalid_argument& e) {
-    throw InputError({"", 0, "--device"}, e.what(), "leave the option out to run the scene on this processor");
+  } catch (const std::exception& e) {  // no such device, not for this scene, or it fails at once
+    throw InputError({"", 0, "--device"}, e.what(), "give --device none for a run on this processor");
   }
 }
 

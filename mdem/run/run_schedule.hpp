@@ -26,7 +26,8 @@ class RunSchedule {
   // Of a good state, to which the run may go back.
   bool has_mark(std::int64_t step) const { return step % window_ == 0; }
   std::int64_t window() const { return window_; }  // between two marks
-  // Where a device moves the elements, a look at their state costs as much as hundreds of steps.
+  // Where a device moves the elements, a look at their state costs, by estimate, as much as
+  // hundreds of steps.
   void look_rarely();
   static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
   // Steps until something is written or checked, or a request to stop has waited for `patience`.

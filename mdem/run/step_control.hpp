@@ -1,7 +1,7 @@
 // The step that follows the motion. A run marks a good state every `window` steps (with a device less often,
-// RunSchedule::look_rarely). Where the motion blows up, or
-// the account of energy does not close over a window, it goes back to the last mark and divides every step in two,
-// up to `most` parts, and puts steps together again once the motion has been quiet. Files count by the whole steps.
+// RunSchedule::look_rarely). Where the motion blows up, or the account of energy does not close over a window, it goes
+// back to the last mark and divides every step in two, up to `most` parts, and puts steps together again once the
+// motion has been quiet. Files count by the whole steps.
 //
 // All of it depends on the states alone: a run is the same bits on any number of threads and after a resume.
 #pragma once

@@ -21,18 +21,18 @@ bool WayBack::is_sound() const {
 bool WayBack::go_back(const std::string& why) {
   Simulation& simulation = moving_.simulation;
   const int divided = simulation.divided();
-  const double time = simulation.state().time;
+  const double time = simulation.time();
   if (divided >= StepControl::most) return false;
   const RunCheckpoint& c = *checkpoints_.mark();
   simulation.restore(c.simulation);
   moving_.control.shorten(divided, simulation);
-  limits_.go_back_to(c.limits, simulation.state().step);
-  stops_.cut(simulation.state().step);
+  limits_.go_back_to(c.limits, simulation.step_count());
+  stops_.cut(simulation.step_count());
   checkpoints_.save_mark_over_later();
   files_.cut(c.log, c.frames);
   // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
   listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.4g} fs", time,
-                             why.substr(0, why.find(';')), simulation.state().time,
+                             why.substr(0, why.find(';')), simulation.time(),
                              simulation.time_step() / simulation.divided() / units::fs));
   return true;
 }

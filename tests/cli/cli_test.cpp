@@ -366,7 +366,7 @@ TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
     const Outcome o = run(std::string("run s.toml --out d --device '") + name + "'");
     EXPECT_EQ(o.code, 2);
     EXPECT_THAT(o.err, HasSubstr("--device: "));
-    EXPECT_THAT(o.err, HasSubstr("leave the option out"));
+    EXPECT_THAT(o.err, HasSubstr("give --device none"));
     EXPECT_FALSE(std::filesystem::exists(dir / "d"));
   }
   spit(dir / "hot.toml",
@@ -378,7 +378,7 @@ TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
   EXPECT_THAT(run("run still.toml --out d --device c++").err, HasSubstr("--device: does not go with a relaxation"));
   const Outcome hot = run("run hot.toml --out d --device c++");
   EXPECT_EQ(hot.code, 2);
-  EXPECT_THAT(hot.err, HasSubstr("a device cannot run this scene: it has no thermostat"));
+  EXPECT_THAT(hot.err, HasSubstr("a device cannot run this scene: devices have no thermostat"));
 }
 
 TEST_F(Cli, BenchOfADevice) {

@@ -1,5 +1,5 @@
 // A processor that runs the kernels of kernels.h: one that OpenCL offers, or this one, by the same text read as
-// C++. Commands are done in the order in which they are given; only read() waits for them.
+// C++. Commands are done in the order in which they are given; read() and write() wait for them.
 //
 // OpenCL's library (libOpenCL.so.1) is opened when a device is asked for, so that the program needs it nowhere
 // else.
@@ -60,7 +60,7 @@ class Device {
 };
 
 // By name:
-//   gpu           the first GPU that OpenCL offers; never another kind of processor
+//   gpu           the first GPU with doubles that OpenCL offers; never another kind of processor
 //   opencl:TEXT   the first device of any kind with TEXT in the name of its platform or in its own
 //   c++           this processor, with the threads of OpenMP
 // Throws std::invalid_argument, in the words of a message to the user, where there is none.

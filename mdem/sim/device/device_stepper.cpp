@@ -83,16 +83,17 @@ std::vector<int> sums_of(const std::vector<int>& counts) {
 
 std::string not_for_a_device(const Topology& topology, const Interaction& in) {
   if (in.law && !law_of(in))
-    return "it has the line law alone as contact, and this scene has \"" + in.law->name() + "\"";
-  if (!in.terms.empty()) return "it cannot compute \"" + in.terms.front()->name() + "\"";
-  if (in.damping.local > 0) return "it cannot compute damping.pfc_local";
-  if (in.law && in.precision == Interaction::Precision::full) return "its contact is in single precision";
-  if (topology.part) return "it cannot share a scene with other processes";
+    return "devices have the contact law \"line\" alone, and this scene has \"" + in.law->name() + "\"";
+  if (!in.terms.empty()) return "devices have no \"" + in.terms.front()->name() + "\"";
+  if (in.damping.local > 0) return "devices have no damping.pfc_local";
+  if (in.law && in.precision == Interaction::Precision::full)
+    return "devices compute the contact in single precision, and this scene has precision = \"double\"";
+  if (topology.part) return "devices share no scene with other processes";
   if (topology.types.size() > MAX_TYPES)
-    return "it can have " + std::to_string(MAX_TYPES) + " kinds of tubes, and this scene has " +
+    return "devices have up to " + std::to_string(MAX_TYPES) + " kinds of tubes, and this scene has " +
            std::to_string(topology.types.size());
   if (in.law && nodes_of(*law_of(in)) > MAX_NODES)
-    return "it can have " + std::to_string(MAX_NODES) + " nodes on an element, and this scene has " +
+    return "devices have up to " + std::to_string(MAX_NODES) + " nodes on an element, and this scene has " +
            std::to_string(nodes_of(*law_of(in)));
   return "";
 }

@@ -5,11 +5,15 @@
 // C++ a phase is a loop over the items.
 //
 // Both compilers give the same bits: each operation is rounded by itself, and products are fused with sums where FMA
-// says so and nowhere else. + - * / sqrt of doubles and + - * fma of floats are the same on every device (IEEE 754).
+// says so and nowhere else. + - * / sqrt of doubles and + - * fma of floats are the same on every device (IEEE 754);
+// / and sqrt of floats, and floats below 1e-38, where the device says so. No exp, log or atan2, whose last bits differ.
+//
+// OpenCL C has no overloads and no macros with any number of arguments, and reserves names: half, dot, cross, ...
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
-#define KERNEL(name, ...) __attribute__((reqd_work_group_size(GROUP, 1, 1))) __kernel void name(__VA_ARGS__)
+#define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
+#define OF_GROUP
 #define GLOBAL __global
 #define LOCAL __local
 #define TO_LOCAL __local  // of a pointer
@@ -27,7 +31,8 @@
 #define ATOMIC_INCREMENT(x) atomic_inc(x)
 #define FUNCTION
 #else
-#define KERNEL(name, ...) void name(int GROUP_NUMBER, __VA_ARGS__)
+#define KERNEL void
+#define OF_GROUP int GROUP_NUMBER,  // first argument of a kernel
 #define GLOBAL
 #define LOCAL
 #define TO_LOCAL

@@ -45,7 +45,7 @@ FUNCTION double within(double x, double low, double high) { return smaller(large
 // --- motion -------------------------------------------------------------------------------------------
 
 // v += F dt/m,  w += M dt/I
-KERNEL(kick, GLOBAL const double* force, GLOBAL const int* kind, GLOBAL const ElementType* types, double dt,
+KERNEL kick(OF_GROUP GLOBAL const double* force, GLOBAL const int* kind, GLOBAL const ElementType* types, double dt,
        int elements, int stride, GLOBAL double* motion) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -60,7 +60,7 @@ KERNEL(kick, GLOBAL const double* force, GLOBAL const int* kind, GLOBAL const El
 }
 
 // Numbers of the elements `which`, from rows of 13 to the columns of motion.
-KERNEL(put_motion, GLOBAL const int* which, GLOBAL const double* rows, int count, int stride,
+KERNEL put_motion(OF_GROUP GLOBAL const int* which, GLOBAL const double* rows, int count, int stride,
        GLOBAL double* motion) {
   FOR_ITEMS(t) {
     const int k = GROUP_NUMBER * GROUP + t;
@@ -80,7 +80,7 @@ FUNCTION double cosine(double h2) {
 
 // x += v dt,  q <- exp(w dt) q  (move_elements in sim/state/motion.hpp); then, of all elements, what the contact
 // reads, and how far they have come (largest_change there).
-KERNEL(drift, GLOBAL double* motion, GLOBAL const int* kind, GLOBAL const double* reference, TwistSince twist,
+KERNEL drift(OF_GROUP GLOBAL double* motion, GLOBAL const int* kind, GLOBAL const double* reference, TwistSince twist,
        double dt, double per_unit, int elements, int stride, GLOBAL int4* centre, GLOBAL float4* axis,
        GLOBAL float4* velocity, GLOBAL float4* spin, GLOBAL double* told) {
   FOR_ITEMS(t) {
@@ -139,7 +139,7 @@ KERNEL(drift, GLOBAL double* motion, GLOBAL const int* kind, GLOBAL const double
 
 // Where the list is built, elements are sorted into cubes as wide as its reach, and cubes into `buckets` buckets, a power
 // of two, by a hash: a scene may be as wide as it likes. cell.w is the bucket.
-KERNEL(count_cells, GLOBAL const double* reference, ListReach reach, int elements, int stride, int buckets,
+KERNEL count_cells(OF_GROUP GLOBAL const double* reference, ListReach reach, int elements, int stride, int buckets,
        GLOBAL int4* cell, GLOBAL int* count) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -156,7 +156,7 @@ KERNEL(count_cells, GLOBAL const double* reference, ListReach reach, int element
 }
 
 // `next`: where the next member of each bucket goes. The order within a bucket is any.
-KERNEL(fill_cells, GLOBAL const int4* cell, int elements, GLOBAL int* next, GLOBAL int* member) {
+KERNEL fill_cells(OF_GROUP GLOBAL const int4* cell, int elements, GLOBAL int* next, GLOBAL int* member) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
     if (i < elements) member[ATOMIC_INCREMENT(&next[cell[i].w])] = i;
@@ -191,7 +191,7 @@ FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, G
 // that nearly touch it, then the others, both in rising order. So the work items of a group, which go through several
 // lists side by side, pass over the others together. Parts of one tube up to element last[i] are no neighbours.
 // `first`: of the members of each bucket.
-KERNEL(find_neighbours, GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
+KERNEL find_neighbours(OF_GROUP GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
        GLOBAL const LineTables* tables, GLOBAL const int* last, GLOBAL const int4* cell, GLOBAL const int* first,
        GLOBAL const int* member, ListReach reach, int elements, int stride, int buckets, int fill,
        GLOBAL const int* begin, GLOBAL int* out) {
@@ -234,7 +234,7 @@ KERNEL(find_neighbours, GLOBAL const double* reference, GLOBAL const int* kind, 
 
 // The line law (sim/contact/line/kernel.cpp has the formulas). LANES work items to an element, each with every
 // LANES-th node of the neighbours, against all nodes of the element.
-KERNEL(line_contact, GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBAL const int* begin,
+KERNEL line_contact(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBAL const int* begin,
        GLOBAL const int* list, GLOBAL const LineTables* tables, int elements, GLOBAL float4* force,
        GLOBAL float4* torque) {
   LOCAL float d[LOCAL_TYPES * LOCAL_TYPES * TERMS * SEGMENTS];
@@ -274,7 +274,7 @@ KERNEL(line_contact, GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBA
           const float sk = own->s[k], X = FMA(sk, sk - 2 * along, square);
           const float place = FMA(X, table->scale, table->shift);
           const int bits = BITS_OF(place) >> MANTISSA_LEFT, segment = bits & (SEGMENTS - 1);
-          const float in = place - FLOAT_OF(bits << MANTISSA_LEFT);
+          const float in = place - FLOAT_OF((int)((unsigned)bits << MANTISSA_LEFT));
           float slope = terms[(TERMS - 1) * SEGMENTS + segment];
           for (int q = TERMS - 2; q >= 0; --q) slope = FMA(slope, in, terms[q * SEGMENTS + segment]);
           if (X < table->core2) {
@@ -322,7 +322,7 @@ KERNEL(line_contact, GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBA
 }
 
 // Adds the viscosity of the contact (model/damping.hpp). torque.w is half the power of the element's pairs.
-KERNEL(viscosity, GLOBAL const int4* centre, GLOBAL const float4* velocity, GLOBAL const float4* spin,
+KERNEL viscosity(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* velocity, GLOBAL const float4* spin,
        GLOBAL const int* begin, GLOBAL const int* list, Viscosity law, int elements, GLOBAL float4* force,
        GLOBAL float4* torque) {
   FOR_ITEMS(t) {
@@ -446,7 +446,7 @@ FUNCTION BondAction anharmonic_bond(GLOBAL const ElementType* k, Vec separation,
 }
 
 // Each bond once, with its damping of the rate `rate` (BondDamping).
-KERNEL(bonds, GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const ElementType* types, double rate,
+KERNEL bonds(OF_GROUP GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const ElementType* types, double rate,
        int elements, int stride, GLOBAL double* bond, GLOBAL double* told) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -460,7 +460,7 @@ KERNEL(bonds, GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const 
         const BodyFrame fi = frame_at(motion, stride, i), fj = frame_at(motion, stride, j);
         const Vec separation = vec_difference(vec_at(motion, 0, stride, j), vec_at(motion, 0, stride, i));
         f = type->anharmonic ? anharmonic_bond(type, separation, fi, fj) : harmonic_bond(type, separation, fi, fj);
-        slips = vec_dot(fi.e1, fj.e1) + vec_dot(fi.e2, fj.e2) > 0 ? 0 : 1;
+        slips = vec_dot(fi.e1, fj.e1) + vec_dot(fi.e2, fj.e2) <= 0 ? 1 : 0;
         if (rate > 0) {
           const Vec wi = vec_at(motion, 10, stride, i), wj = vec_at(motion, 10, stride, j);
           const Vec arm = vec_scaled(0.5, separation), spin = vec_difference(wj, wi);
@@ -484,7 +484,7 @@ KERNEL(bonds, GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const 
 }
 
 // The force on every element: of its two bonds, of the contact and of its viscosity.
-KERNEL(collect, GLOBAL const double* bond, GLOBAL const int* kind, GLOBAL const float4* contact_force,
+KERNEL collect(OF_GROUP GLOBAL const double* bond, GLOBAL const int* kind, GLOBAL const float4* contact_force,
        GLOBAL const float4* contact_torque, int elements, int stride, GLOBAL double* force, GLOBAL double* told) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -507,7 +507,7 @@ KERNEL(collect, GLOBAL const double* bond, GLOBAL const int* kind, GLOBAL const 
 // Of each group of elements: the largest of some columns and the sum of the others, in a fixed order. The sum of the
 // speeds alone is sure to be NaN or infinite where a velocity is, and that of the changes where a place is. Of the
 // bonds that slip, the first.
-KERNEL(summary, GLOBAL const double* told, int elements, int stride, int groups, GLOBAL double* out) {
+KERNEL summary(OF_GROUP GLOBAL const double* told, int elements, int stride, int groups, GLOBAL double* out) {
   LOCAL double sums[SUMMARY * GROUP];
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -536,7 +536,7 @@ KERNEL(summary, GLOBAL const double* told, int elements, int stride, int groups,
 }
 
 // Rows of 6 numbers from the columns of force, behind `before` numbers.
-KERNEL(get_force, GLOBAL const double* force, GLOBAL const int* which, int count, int stride, int before,
+KERNEL get_force(OF_GROUP GLOBAL const double* force, GLOBAL const int* which, int count, int stride, int before,
        GLOBAL double* rows) {
   FOR_ITEMS(t) {
     const int k = GROUP_NUMBER * GROUP + t;

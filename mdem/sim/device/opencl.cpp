@@ -62,7 +62,7 @@ void check(cl_int code, const char* what) {
   const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES ||
                       code == CL_OUT_OF_HOST_MEMORY || code == CL_INVALID_BUFFER_SIZE;
   throw std::runtime_error(std::string("the device failed: ") + what + " gave OpenCL's error " +
-                           std::to_string(code) + (memory ? ": it has too little memory" : ""));
+                           std::to_string(code) + (memory ? ": it has too little memory, or a kernel failed" : ""));
 }
 
 // `get(size, value, size_needed)` of one of OpenCL's functions for names.
@@ -126,13 +126,15 @@ std::string names_of(const std::vector<Found>& all) {
 
 Found choose(const std::string& part, bool gpu_only) {
   const std::vector<Found> all = all_devices();
+  std::string without_doubles;
   for (const Found& f : all) {
     if (gpu_only && !(f.type & CL_DEVICE_TYPE_GPU)) continue;
     if (lower(f.name).find(lower(part)) == std::string::npos) continue;
-    if (text_of(f.device, CL_DEVICE_EXTENSIONS).find("cl_khr_fp64") == std::string::npos)
-      throw std::invalid_argument("\"" + f.name + "\" has no numbers of double precision (cl_khr_fp64)");
-    return f;
+    if (text_of(f.device, CL_DEVICE_EXTENSIONS).find("cl_khr_fp64") != std::string::npos) return f;
+    without_doubles = f.name;
   }
+  if (!without_doubles.empty())
+    throw std::invalid_argument("\"" + without_doubles + "\" has no numbers of double precision (cl_khr_fp64)");
   throw std::invalid_argument(
       (gpu_only ? std::string("no GPU was found") : "no device has \"" + part + "\" in its name") + "; " +
       names_of(all));
@@ -149,7 +151,7 @@ class OpenClDevice : public Device {
     std::ostringstream source;
     source << "#define NODES " << shape.nodes << "\n#define TYPES " << shape.types
            << "\n#define LOCAL_TYPES TYPES\n"
-           << kernel_types_text << kernel_dialect_text << kernel_text;
+           << kernel_dialect_text << kernel_types_text << kernel_text;
     const std::string written = source.str();
     const char* begin = written.c_str();
     const std::size_t length = written.size();
@@ -159,12 +161,15 @@ class OpenClDevice : public Device {
     check(cl().GetDeviceInfo(found.device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof floats, &floats, nullptr),
           "its floats");
     const bool rounds = (floats & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    if (!rounds || !(floats & CL_FP_DENORM)) name_ += " (floats not all by IEEE 754: other last digits)";
     const char* const options = rounds ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" : "-cl-std=CL1.2";
-    if (cl().BuildProgram(program_.get(), 1, &found.device, options, nullptr, nullptr) != CL_SUCCESS) {
+    code = cl().BuildProgram(program_.get(), 1, &found.device, options, nullptr, nullptr);
+    if (code != CL_SUCCESS) {
       const std::string log = text([&](std::size_t size, char* to, std::size_t* needed) {
         return cl().GetProgramBuildInfo(program_.get(), found.device, CL_PROGRAM_BUILD_LOG, size, to, needed);
       });
-      throw std::runtime_error("the compiler of \"" + name_ + "\" refused the kernels: " + log);
+      throw std::runtime_error("the compiler of \"" + name_ + "\" refused the kernels, OpenCL's error " +
+                               std::to_string(code) + ": " + log);
     }
   }
 

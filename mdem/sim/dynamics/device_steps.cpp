@@ -12,9 +12,9 @@ namespace ropewalk {
 
 void Simulation::use_device(const std::string& name) {
   come_back();
-  if (stepping_.thermostat) throw std::invalid_argument("a device cannot run this scene: it has no thermostat");
+  if (stepping_.thermostat) throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
   if (stepping_.runge_kutta)
-    throw std::invalid_argument("a device cannot run this scene: it has no rotations by Runge-Kutta");
+    throw std::invalid_argument("a device cannot run this scene: devices have no run.integrator = \"rk4\"");
   device_ = {};
   device_.stepper = std::make_shared<DeviceStepper>(topology_, interaction_, name);
 }
@@ -71,7 +71,8 @@ void Simulation::come_back() {
 void Simulation::compute_on_device() {
   device_.ahead = true;
   device_.energies_missing = false;
-  forces_.energy.vdw = std::numeric_limits<double>::quiet_NaN();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  forces_.energy = {unknown, unknown, unknown, unknown, unknown, unknown};
   DeviceStepper::Told told = device_.stepper->compute(forces_);
   const MotionBound bound(topology_.largest_radius(), part_step());
   if (!bound.holds(told.fastest)) {
@@ -92,7 +93,7 @@ void Simulation::compute_on_device() {
   forces_.slipping_bond = told.slipping_bond;
   forces_.lost = 0;
   add_point_loads();
-  check_forces(false);
+  check_slip();
   account_.dissipated -= part_step() * forces_.damping_power;
 }
 

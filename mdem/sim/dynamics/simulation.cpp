@@ -234,6 +234,10 @@ void Simulation::add_point_loads() {
 void Simulation::check_forces(bool energies) const {
   const double energy = energies ? forces_.energy.potential() : forces_.energy.bonds();
   if (!std::isfinite(energy)) throw blown_up(state_.step, -1);
+  check_slip();
+}
+
+void Simulation::check_slip() const {
   if (forces_.slipping_bond >= 0)
     throw NumericalError(state_.step, forces_.slipping_bond,
                          "the bond to the next element is twisted by 90 degrees, where its torque is largest: it "
@@ -277,7 +281,7 @@ EndReadings Simulation::read_gauges() {
 }
 
 void Simulation::use_thermostat(std::shared_ptr<const Thermostat> thermostat) {
-  if (device_.stepper && thermostat) throw std::invalid_argument("a device cannot run this scene: it has no thermostat");
+  if (device_.stepper && thermostat) throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
   stepping_.thermostat = std::move(thermostat);
 }
 

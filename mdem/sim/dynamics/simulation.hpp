@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -162,6 +163,7 @@ class Simulation {
   void compute(bool energies = true, std::optional<double> passed = {});
   void add_point_loads();
   void check_forces(bool energies) const;
+  void check_slip() const;
   void relax_spins_if_due();
   double engine_seconds() const;
   void begin_relaxation(const RelaxGoal& goal);
@@ -214,7 +216,9 @@ class Simulation {
     std::vector<Segment> hosted;    // what this processor moves
 
     OwnDevice() = default;
-    OwnDevice(const OwnDevice& other) { ROPEWALK_EXPECTS(!other.ahead && !other.energies_missing); }
+    OwnDevice(const OwnDevice& other) {
+      if (other.ahead || other.energies_missing) throw std::logic_error("a simulation is copied that is on a device");
+    }
     OwnDevice(OwnDevice&&) = default;
     OwnDevice& operator=(OwnDevice&&) = default;
     OwnDevice& operator=(const OwnDevice& other) { return *this = OwnDevice(other); }
