@@ -7,8 +7,8 @@
 #include "bench/step_cost.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
-#include "run/run_settings.hpp"
 #include "run/threads.hpp"
+#include "run/use_device.hpp"
 #include "sim/contact/line/engine.hpp"
 
 namespace ropewalk {
@@ -59,7 +59,7 @@ int bench_command(const BenchArguments& a) {
     throw InputError({"", 0, "scene"}, "is missing", "give a file, or see `ropewalk bench --list`");
   if (a.lammps > 0) return bench_lammps(a);
   if (a.parts > 0) return bench_parts(a);
-  if (!a.device.empty() && a.device != no_device) return bench_device(a);
+  if (names_device(a.device)) return bench_device(a);
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
   use_instructions(a.instructions);

@@ -3,30 +3,18 @@
 #include <omp.h>
 
 #include <cmath>
-#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "bench/bench_scenes.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
 #include "run/threads.hpp"
+#include "run/use_device.hpp"
 #include "scene/prepare.hpp"
 #include "sim/device/device_stepper.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
-namespace {
-
-void use_device(Simulation& simulation, const std::string& name) {
-  try {
-    simulation.use_device(name);
-  } catch (const std::exception& e) {
-    throw InputError({"", 0, "--device"}, e.what(), "give --device none to measure this processor");
-  }
-}
-
-}  // namespace
-
 int bench_device(const BenchArguments& a) {
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);

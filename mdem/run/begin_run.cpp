@@ -9,6 +9,7 @@
 #include "model/error.hpp"
 #include "run/origin_changes.hpp"
 #include "run/stages.hpp"
+#include "run/use_device.hpp"
 #include "sim/contact/line/engine.hpp"
 
 namespace ropewalk {

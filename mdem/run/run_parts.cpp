@@ -1,8 +1,7 @@
 #include "run/run_parts.hpp"
 
-#include <exception>
-
 #include "model/error.hpp"
+#include "run/use_device.hpp"
 
 namespace ropewalk {
 
@@ -20,17 +19,12 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
 }
 
 void RunParts::use_device() {
-  const std::string& name = settings.device;
-  if (name.empty() || name == no_device) return;
+  if (!names_device(settings.device)) return;
   if (moving.relaxes())
     throw InputError({"", 0, "--device"}, "does not go with a relaxation, which this processor does",
                      "give --device none");
-  try {
-    moving.simulation.use_device(name);
-    schedule.look_rarely();
-  } catch (const std::exception& e) {  // no such device, not for this scene, or it fails at once
-    throw InputError({"", 0, "--device"}, e.what(), "give --device none for a run on this processor");
-  }
+  ropewalk::use_device(moving.simulation, settings.device);
+  schedule.look_rarely();
 }
 
 void RunParts::write_row() {

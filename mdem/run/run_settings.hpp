@@ -8,8 +8,6 @@
 
 namespace ropewalk {
 
-inline constexpr char no_device[] = "none";
-
 struct RunSettings {
   long steps = -1;       // time step at which it stops; -1: the scene's end
   double until_ps = -1;  // time at which it stops; -1: the scene's end

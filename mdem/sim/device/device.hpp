@@ -1,5 +1,6 @@
-// A processor that runs the kernels of kernels.h: one that OpenCL offers, or this one, by the same text read as
-// C++. Commands are done in the order in which they are given; read() and write() wait for them.
+// A device runs the kernels of kernels.h. It is a processor that OpenCL offers, or the one of the program, which
+// reads the same text as C++. A device carries out commands in the order of the calls. read() and write() return
+// after all commands before them are done.
 //
 // OpenCL's library (libOpenCL.so.1) is opened when a device is asked for, so that the program needs it nowhere
 // else.
@@ -10,7 +11,6 @@
 #include <memory>
 #include <string>
 #include <tuple>
-#include <vector>
 
 namespace ropewalk {
 
@@ -26,13 +26,14 @@ class Device {
   virtual ~Device() = default;
   virtual std::string name() const = 0;
 
-  // Its content is not defined. Throws std::runtime_error where there is not so much.
+  // The content of new memory is not defined. Throws std::runtime_error where the device has too little memory.
   virtual Memory allocate(std::size_t bytes) = 0;
   virtual void write(const Memory& to, const void* from, std::size_t bytes) = 0;
-  // The same at some time before the next read(): until then `from` stays as it is.
+  // Copies at some time before the next read(). Until then the caller must not change `from`.
   virtual void write_later(const Memory& to, const void* from, std::size_t bytes) = 0;
   virtual void read(const Memory& from, void* to, std::size_t bytes) = 0;
-  // Runs a kernel with the arguments that its text names, in their order: Memory for pointers, and values.
+  // Runs a kernel. The arguments are those of the kernel's text in their order: Memory for a pointer, else the
+  // value.
   template <class... A>
   void run(const char* kernel, int groups, const A&... arguments) {
     const auto values = std::make_tuple(value_of(arguments)...);
@@ -65,9 +66,6 @@ class Device {
 //   c++           this processor, with the threads of OpenMP
 // Throws std::invalid_argument, in the words of a message to the user, where there is none.
 std::unique_ptr<Device> open_device(const std::string& name, const KernelShape& shape);
-
-// Each as "platform: device". Empty where there is no OpenCL.
-std::vector<std::string> opencl_devices();
 
 // Implementations.
 std::unique_ptr<Device> open_opencl(const std::string& text, bool gpu_only, const KernelShape& shape);

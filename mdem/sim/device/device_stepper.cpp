@@ -1,6 +1,7 @@
 #include "sim/device/device_stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "sim/contact/line/list.hpp"
 #include "sim/contact/line/radial_table.hpp"
 #include "sim/device/types.h"
+#include "sim/neighbours/excluded.hpp"
 
 namespace ropewalk {
 namespace {
@@ -61,15 +63,17 @@ LineTables line_tables(const LineLaw& law, int types, double unit) {
   return out;
 }
 
-// The last element of the same tube that is too near along it to be a neighbour, of each element.
-std::vector<int> last_excluded(const Topology& topology, const Interaction& in) {
-  std::vector<int> last(static_cast<std::size_t>(topology.elements()));
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const int excluded = topology.type_of(t).elements_within(in.excluded_arc());
-    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-      last[static_cast<std::size_t>(i)] = topology.last_within(excluded, i, t);
-  }
-  return last;
+// The columns of `motion` and of `force` in kernels.h, in their order.
+template <class S>
+auto columns_of(S& s) {
+  return std::array{&s.position.x,        &s.position.y,    &s.position.z,         &s.orientation.w,
+                    &s.orientation.x,     &s.orientation.y, &s.orientation.z,      &s.velocity.x,
+                    &s.velocity.y,        &s.velocity.z,    &s.angular_velocity.x, &s.angular_velocity.y,
+                    &s.angular_velocity.z};
+}
+template <class F>
+auto force_columns_of(F& f) {
+  return std::array{&f.force.x, &f.force.y, &f.force.z, &f.torque.x, &f.torque.y, &f.torque.z};
 }
 
 // 0, and the sums of the first, of the first two, and so on.
@@ -122,7 +126,7 @@ DeviceStepper::DeviceStepper(const Topology& topology, const Interaction& intera
   for (buckets_ = 64; buckets_ < elements_ / 2; buckets_ *= 2) {
   }
   const auto buckets = static_cast<std::size_t>(buckets_);
-  last_ = send(last_excluded(topology, interaction));
+  last_ = send(last_excluded(topology, interaction.excluded_arc()));
   cell_ = allocate(quad), member_ = allocate(n * sizeof(int)), counts_ = allocate(n * sizeof(int)),
   begin_ = allocate((n + 1) * sizeof(int));
   first_ = allocate((buckets + 1) * sizeof(int)), next_ = allocate(buckets * sizeof(int));
@@ -141,6 +145,15 @@ Device::Memory DeviceStepper::send(const std::vector<T>& numbers) {
   return memory;
 }
 
+template <class Columns>
+void DeviceStepper::send_columns(const Columns& columns, const Device::Memory& to) {
+  const auto n = static_cast<std::size_t>(stride_);
+  std::vector<double> numbers(columns.size() * n);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    std::copy(columns[c]->begin(), columns[c]->end(), numbers.begin() + static_cast<std::ptrdiff_t>(c * n));
+  device_->write(to, numbers.data(), numbers.size() * sizeof(double));
+}
+
 void DeviceStepper::take(const State& state, const Forces& forces, std::vector<int> hosted,
                          const NeighbourList& list) {
   ROPEWALK_EXPECTS(static_cast<int>(state.size()) == elements_ && std::is_sorted(hosted.begin(), hosted.end()));
@@ -157,19 +170,8 @@ void DeviceStepper::take(const State& state, const Forces& forces, std::vector<i
   hosted_motion_ = send(rows_);
   sums_.resize(static_cast<std::size_t>(SUMMARY * groups_) + 6 * hosted_.size());
   summary_ = send(sums_);
-  const auto columns = [&](const std::vector<const Column*>& all, const Device::Memory& to) {
-    std::vector<double> numbers(all.size() * static_cast<std::size_t>(stride_));
-    for (std::size_t c = 0; c < all.size(); ++c)
-      std::copy(all[c]->begin(), all[c]->end(), numbers.begin() + static_cast<std::ptrdiff_t>(c) * stride_);
-    device_->write(to, numbers.data(), numbers.size() * sizeof(double));
-  };
-  const State& s = state;
-  columns({&s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x, &s.orientation.y,
-           &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z, &s.angular_velocity.x,
-           &s.angular_velocity.y, &s.angular_velocity.z},
-          motion_);
-  columns({&forces.force.x, &forces.force.y, &forces.force.z, &forces.torque.x, &forces.torque.y, &forces.torque.z},
-          force_);
+  send_columns(columns_of(state), motion_);
+  send_columns(force_columns_of(forces), force_);
   use_list(list);
 }
 
@@ -178,12 +180,8 @@ void DeviceStepper::use_list(const NeighbourList& list) {
   unit_ = list.coordinate_unit();
   if (law && !tables_)
     tables_ = send(std::vector<LineTables>{line_tables(*law, static_cast<int>(topology_.types.size()), unit_)});
-  std::vector<double> numbers(6 * static_cast<std::size_t>(stride_));
   const Vec3Array &x = list.reference(), &n = list.reference_axis();
-  const Column* const all[] = {&x.x, &x.y, &x.z, &n.x, &n.y, &n.z};
-  for (std::size_t c = 0; c < 6; ++c)
-    std::copy(all[c]->begin(), all[c]->end(), numbers.begin() + static_cast<std::ptrdiff_t>(c) * stride_);
-  device_->write(reference_, numbers.data(), numbers.size() * sizeof(double));
+  send_columns(std::array{&x.x, &x.y, &x.z, &n.x, &n.y, &n.z}, reference_);
   if (law) find_neighbours(list);
 }
 
@@ -232,15 +230,10 @@ void DeviceStepper::kick(double dt) {
 
 void DeviceStepper::drift(double dt, const State& s, const NeighbourList& list) {
   const int count = static_cast<int>(hosted_.size());
-  for (std::size_t k = 0; k < hosted_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(hosted_[k]);
-    const double numbers[] = {s.position.x[i],        s.position.y[i],         s.position.z[i],
-                              s.orientation.w[i],     s.orientation.x[i],      s.orientation.y[i],
-                              s.orientation.z[i],     s.velocity.x[i],         s.velocity.y[i],
-                              s.velocity.z[i],        s.angular_velocity.x[i], s.angular_velocity.y[i],
-                              s.angular_velocity.z[i]};
-    std::copy(std::begin(numbers), std::end(numbers), rows_.begin() + static_cast<std::ptrdiff_t>(13 * k));
-  }
+  const auto columns = columns_of(s);
+  for (std::size_t k = 0; k < hosted_.size(); ++k)
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      rows_[columns.size() * k + c] = (*columns[c])[static_cast<std::size_t>(hosted_[k])];
   device_->write_later(hosted_motion_, rows_.data(), 13 * hosted_.size() * sizeof(double));
   device_->run("put_motion", (count + GROUP - 1) / GROUP, which_, hosted_motion_, count, stride_, motion_);
   const TwistOfAll& of = list.common_twist();
@@ -296,10 +289,9 @@ void DeviceStepper::give_places(State& s) const {
   const auto n = static_cast<std::size_t>(stride_);
   std::vector<double> numbers(7 * n);
   device_->read(motion_, numbers.data(), numbers.size() * sizeof(double));
-  Column* const all[] = {&s.position.x,    &s.position.y,    &s.position.z,   &s.orientation.w,
-                         &s.orientation.x, &s.orientation.y, &s.orientation.z};
-  for (std::size_t c = 0; c < std::size(all); ++c)
-    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(c * n), elements_, all[c]->begin());
+  const auto columns = columns_of(s);
+  for (std::size_t c = 0; c < 7; ++c)
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(c * n), elements_, columns[c]->begin());
 }
 
 void DeviceStepper::give(State& s, Forces& forces) const {
@@ -309,16 +301,13 @@ void DeviceStepper::give(State& s, Forces& forces) const {
   device_->read(force_, force.data(), force.size() * sizeof(double));
   std::vector<char> here(static_cast<std::size_t>(elements_), 0);
   for (const int i : hosted_) here[static_cast<std::size_t>(i)] = 1;
-  const auto columns = [&](const std::vector<double>& numbers, const std::vector<Column*>& all) {
+  const auto columns = [&](const std::vector<double>& numbers, const auto& all) {
     for (std::size_t c = 0; c < all.size(); ++c)
       for (std::size_t i = 0; i < here.size(); ++i)
         if (!here[i]) (*all[c])[i] = numbers[c * n + i];
   };
-  columns(motion, {&s.position.x, &s.position.y, &s.position.z, &s.orientation.w, &s.orientation.x,
-                   &s.orientation.y, &s.orientation.z, &s.velocity.x, &s.velocity.y, &s.velocity.z,
-                   &s.angular_velocity.x, &s.angular_velocity.y, &s.angular_velocity.z});
-  columns(force, {&forces.force.x, &forces.force.y, &forces.force.z, &forces.torque.x, &forces.torque.y,
-                  &forces.torque.z});
+  columns(motion, columns_of(s));
+  columns(force, force_columns_of(forces));
 }
 
 }  // namespace ropewalk

@@ -67,6 +67,8 @@ class DeviceStepper {
   Device::Memory allocate(std::size_t bytes);
   template <class T>
   Device::Memory send(const std::vector<T>& numbers);
+  template <class Columns>
+  void send_columns(const Columns& columns, const Device::Memory& to);
   void find_neighbours(const NeighbourList& list);
 
   const Topology topology_;

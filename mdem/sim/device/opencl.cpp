@@ -11,6 +11,7 @@
 #include <cctype>
 #include <map>
 #include <sstream>
+#include <vector>
 
 #include "sim/device/kernel_text.hpp"
 #include "sim/device/types.h"
@@ -233,12 +234,6 @@ class OpenClDevice : public Device {
 
 }  // namespace
 
-std::vector<std::string> opencl_devices() {
-  std::vector<std::string> names;
-  for (const Found& f : all_devices()) names.push_back(f.name);
-  return names;
-}
-
 std::unique_ptr<Device> open_opencl(const std::string& part, bool gpu_only, const KernelShape& shape) {
   return std::make_unique<OpenClDevice>(choose(part, gpu_only), shape);
 }
@@ -248,8 +243,6 @@ std::unique_ptr<Device> open_opencl(const std::string& part, bool gpu_only, cons
 #else
 
 namespace ropewalk {
-
-std::vector<std::string> opencl_devices() { return {}; }
 
 std::unique_ptr<Device> open_opencl(const std::string&, bool, const KernelShape&) {
   throw std::invalid_argument(

@@ -8,6 +8,7 @@
 
 #include "model/contract.hpp"
 #include "sim/neighbours/cell_grid.hpp"
+#include "sim/neighbours/excluded.hpp"
 #include "sim/threads/scratch.hpp"
 
 namespace ropewalk {
@@ -81,12 +82,7 @@ void NeighbourList::find_pairs(const Topology& topology) {
   pairs_ = 0;
   if (cutoff > 0) {
     const CellGrid grid(p, reach);
-    std::vector<int> last(static_cast<std::size_t>(n));  // last element of the same tube that is excluded
-    for (int t = 0; t < topology.tubes(); ++t) {
-      const int excluded = topology.type_of(t).elements_within(excluded_arc);
-      for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i)
-        last[static_cast<std::size_t>(i)] = topology.last_within(excluded, i, t);
-    }
+    const std::vector<int> last = last_excluded(topology, excluded_arc);
 
     constexpr int parts = 64;
     std::vector<std::vector<ElementSpan>> found(parts);
