@@ -1,4 +1,5 @@
-// The words of mdem/sim/device/dialect.h for CUDA, whose compiler says how many registers the kernels take.
+// Defines the macros of mdem/sim/device/dialect.h for CUDA, so that nvcc can compile the kernels and report the registers of
+// each kernel.
 #define KERNEL extern "C" __global__ void __launch_bounds__(128)
 #define OF_GROUP
 #define GLOBAL

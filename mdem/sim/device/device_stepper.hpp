@@ -1,8 +1,9 @@
-// The elements of a scene on a device: it moves those that no load acts on. The host moves the few others itself,
-// with the same loads, constraints and gauges as without a device, and sends them in every step. What the device
-// does not know it refuses by name.
+// The elements of a scene on a device. The device moves the elements that no load acts on. The host moves the few
+// other elements, with the loads, constraints and gauges that a simulation without a device has, and sends them to
+// the device in every step. A scene with a force that no device computes is refused.
 //
-// Contact in floats, on coordinates modulo 2^32; motion and bonds in doubles. Bits do not depend on the device.
+// The contact is computed in floats, on coordinates modulo 2^32; motion and bonds in doubles. All devices give the
+// same bits.
 #pragma once
 
 #include <memory>
@@ -23,11 +24,10 @@ std::string not_for_a_device(const Topology& topology, const Interaction& intera
 
 class DeviceStepper {
  public:
-  // Of all elements in one step: their velocities before it, how far they are from where the list was built, and
-  // what the damping does.
+  // Sums over all elements in one step.
   struct Told {
-    Fastest fastest;
-    Change change;
+    Fastest fastest;           // velocities of the drift
+    Change change;             // displacements since the list was built
     double damping_power = 0;  // eV/ps
     int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
   };

@@ -1,4 +1,4 @@
-// The words in which kernels.h is written, for OpenCL C and for C++.
+// Macros in which kernels.h is written: once for OpenCL C, once for C++.
 //
 // A kernel runs once for every group of GROUP work items, in phases: FOR_ITEMS(t) { ... } is one phase, run by every
 // item t of the group, and BARRIER stands between two phases. What a phase leaves to the next lies in LOCAL arrays. In

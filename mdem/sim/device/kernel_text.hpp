@@ -1,4 +1,4 @@
-// The text of the kernels, for a compiler at run time. Written by cmake/embed.cmake.
+// The text of the kernels, which OpenCL compiles at run time. cmake/embed.cmake writes the source file.
 #pragma once
 
 namespace ropewalk {

@@ -1,15 +1,17 @@
 // The kernels of a step of velocity Verlet (sim/dynamics/verlet.hpp), for a device and for C++. Before this text:
 // dialect.h, types.h and the numbers GROUP, LANES, NODES, TYPES.
 //
-// Columns of numbers, one number of each for every element, `stride` apart:
+// The state is held in columns. A column has one number for every element; two columns begin `stride` numbers apart. The
+// number before a quantity is its first column:
 //   motion     0 position, 3 orientation (w, x, y, z), 7 velocity, 10 angular velocity
 //   force      0 force, 3 torque
 //   bond       of the bond from an element to the next: 0 force on the next, 3 torque on the element, 6 torque on the
 //              next, 9 power of its damping
 //   reference  0 position, 3 axis, where the neighbour list was built
-//   told       what the host wants to know of every element; `summary` sums it up
-// Every element gathers what acts on it, in the order of its neighbours, so that the bits of a run are those of its
-// lists. Units nm, ps, eV; coordinates of the contact are whole numbers of table->unit modulo 2^32
+//   told       speeds, displacements, power of the damping, slipping bonds (types.h has the order); the kernel `summary`
+//              adds them up for the host
+// Each element adds the forces of its neighbours in the order of its list. The bits of a run follow from its lists. Units
+// nm, ps, eV. Coordinates of the contact are whole numbers of LineTables::unit modulo 2^32
 // (sim/contact/shared/wrapped.hpp).
 
 typedef struct {
@@ -59,7 +61,8 @@ KERNEL kick(OF_GROUP GLOBAL const double* force, GLOBAL const int* kind, GLOBAL 
   }
 }
 
-// Numbers of the elements `which`, from rows of 13 to the columns of motion.
+// Copies the state of the elements `which` into the columns of motion. `rows` has the 13 numbers of one element after
+// those of the other.
 KERNEL put_motion(OF_GROUP GLOBAL const int* which, GLOBAL const double* rows, int count, int stride,
        GLOBAL double* motion) {
   FOR_ITEMS(t) {
@@ -78,8 +81,9 @@ FUNCTION double cosine(double h2) {
                                                                                        h2 * (1.0 / 479001600))))));
 }
 
-// x += v dt,  q <- exp(w dt) q  (move_elements in sim/state/motion.hpp); then, of all elements, what the contact
-// reads, and how far they have come (largest_change there).
+// Moves the elements of the device:  x += v dt,  q <- exp(w dt) q  (move_elements in sim/state/motion.hpp). Then writes,
+// for all elements, the copies in floats that the contact reads, and the displacements since the list was built
+// (largest_change in sim/state/motion.hpp).
 KERNEL drift(OF_GROUP GLOBAL double* motion, GLOBAL const int* kind, GLOBAL const double* reference, TwistSince twist,
        double dt, double per_unit, int elements, int stride, GLOBAL int4* centre, GLOBAL float4* axis,
        GLOBAL float4* velocity, GLOBAL float4* spin, GLOBAL double* told) {
@@ -137,8 +141,8 @@ KERNEL drift(OF_GROUP GLOBAL double* motion, GLOBAL const int* kind, GLOBAL cons
 
 // --- neighbours ---------------------------------------------------------------------------------------
 
-// Where the list is built, elements are sorted into cubes as wide as its reach, and cubes into `buckets` buckets, a power
-// of two, by a hash: a scene may be as wide as it likes. cell.w is the bucket.
+// Sorts the elements into cubes as wide as the reach of the list. A hash of a cube's place gives one of `buckets` buckets
+// (a power of two), so that memory does not depend on the width of the scene. cell: the cube in x, y, z, its bucket in w.
 KERNEL count_cells(OF_GROUP GLOBAL const double* reference, ListReach reach, int elements, int stride, int buckets,
        GLOBAL int4* cell, GLOBAL int* count) {
   FOR_ITEMS(t) {
@@ -155,7 +159,8 @@ KERNEL count_cells(OF_GROUP GLOBAL const double* reference, ListReach reach, int
   }
 }
 
-// `next`: where the next member of each bucket goes. The order within a bucket is any.
+// Lists the members of each bucket. `next` has the place of the next member of each bucket. Members of one bucket stand in
+// no particular order.
 KERNEL fill_cells(OF_GROUP GLOBAL const int4* cell, int elements, GLOBAL int* next, GLOBAL int* member) {
   FOR_ITEMS(t) {
     const int i = GROUP_NUMBER * GROUP + t;
@@ -163,9 +168,8 @@ KERNEL fill_cells(OF_GROUP GLOBAL const int4* cell, int elements, GLOBAL int* ne
   }
 }
 
-// Whether elements i and j > i may act on each other before the list is built again, because a node of j comes within
-// reach of the nodes of i, or because the centres come within that of the viscosity (0: no), and whether they nearly do
-// so now (2).
+// Whether elements i and j > i may act on each other before the list is built again: through their nodes, or through the
+// viscosity of their centres. 0: no; 1: yes; 2: yes, and a node of j is within NEAR of the cutoff already.
 FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
                        GLOBAL const LineTables* tables, ListReach reach, int stride, int i, int j) {
   const Vec apart = vec_difference(vec_at(reference, 0, stride, j), vec_at(reference, 0, stride, i));
@@ -187,10 +191,10 @@ FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, G
   return least < listed * listed || square < reach.viscosity * reach.viscosity;
 }
 
-// Counts the neighbours of each element (fill = 0), or lists them from begin[i] to begin[i + 1] (fill = 1): first those
-// that nearly touch it, then the others, both in rising order. So the work items of a group, which go through several
-// lists side by side, pass over the others together. Parts of one tube up to element last[i] are no neighbours.
-// `first`: of the members of each bucket.
+// Counts the neighbours of each element (fill = 0), or lists them from begin[i] to begin[i + 1] (fill = 1). Neighbours for
+// which may_touch() is 2 stand first; both parts are in rising order. The work items of a group go through the lists of
+// several elements side by side, and so skip the second parts at the same time. Elements i to last[i] are parts of one tube
+// and no neighbours. `first` has the place of the first member of each bucket.
 KERNEL find_neighbours(OF_GROUP GLOBAL const double* reference, GLOBAL const int* kind, GLOBAL const ElementType* types,
        GLOBAL const LineTables* tables, GLOBAL const int* last, GLOBAL const int4* cell, GLOBAL const int* first,
        GLOBAL const int* member, ListReach reach, int elements, int stride, int buckets, int fill,
@@ -232,8 +236,8 @@ KERNEL find_neighbours(OF_GROUP GLOBAL const double* reference, GLOBAL const int
 // Coordinates count modulo 2^32.
 #define APART(to, from) ((int)((unsigned)(to) - (unsigned)(from)))
 
-// The line law (sim/contact/line/kernel.cpp has the formulas). LANES work items to an element, each with every
-// LANES-th node of the neighbours, against all nodes of the element.
+// Forces and torques of the line law (formulas: sim/contact/line/kernel.cpp). LANES work items share an element. Each of
+// them takes every LANES-th node of the neighbours, and sums over all nodes of the element.
 KERNEL line_contact(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* axis, GLOBAL const int* begin,
        GLOBAL const int* list, GLOBAL const LineTables* tables, int elements, GLOBAL float4* force,
        GLOBAL float4* torque) {
@@ -321,7 +325,8 @@ KERNEL line_contact(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* axi
   }
 }
 
-// Adds the viscosity of the contact (model/damping.hpp). torque.w is half the power of the element's pairs.
+// Adds the forces and torques of the contact viscosity (model/damping.hpp). torque.w becomes half of the power that the
+// viscosity has in the pairs of the element, eV/ps; the other half is the partners'.
 KERNEL viscosity(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* velocity, GLOBAL const float4* spin,
        GLOBAL const int* begin, GLOBAL const int* list, Viscosity law, int elements, GLOBAL float4* force,
        GLOBAL float4* torque) {
@@ -342,7 +347,7 @@ KERNEL viscosity(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* veloci
         const float4 vj = velocity[j], wj = spin[j];
         const float far = (distance - law.inner) * law.per_width, z = far > 0 ? far : 0;
         const float strength = law.eta * FMA(-z * z, FMA(-2, z, 3), 1);
-        // Of j to i at the middle, with the arm from i.
+        // r is the velocity of j relative to i at the point midway between the centres; a is the arm from i to this point.
         const float ax = 0.5f * dx, ay = 0.5f * dy, az = 0.5f * dz;
         const float sx = w.x + wj.x, sy = w.y + wj.y, sz = w.z + wj.z;
         const float rx = vj.x - v.x - (sy * az - sz * ay), ry = vj.y - v.y - (sz * ax - sx * az),
@@ -395,8 +400,8 @@ FUNCTION BondAction harmonic_bond(GLOBAL const ElementType* k, Vec separation, B
   return out;
 }
 
-// The angle of (x, y) for x > 0: four times that of a quarter of the angle, by its series. The math libraries' own
-// atan2 have other last bits.
+// The angle of the vector (x, y) for x > 0. The tangent of a quarter of the angle follows from two square roots, and the
+// series of the arc tangent gives this quarter. The functions atan2 of different compilers differ in their last bits.
 FUNCTION double angle_of(double y, double x) {
   const double tangent = y / (SQRT(x * x + y * y) + x);  // of the half angle
   const double t = tangent / (1 + SQRT(1 + tangent * tangent)), u = t * t;
@@ -445,7 +450,7 @@ FUNCTION BondAction anharmonic_bond(GLOBAL const ElementType* k, Vec separation,
   return out;
 }
 
-// Each bond once, with its damping of the rate `rate` (BondDamping).
+// Forces and torques of each bond, computed once, with the bond damping of this rate (1/ps; BondDamping).
 KERNEL bonds(OF_GROUP GLOBAL const double* motion, GLOBAL const int* kind, GLOBAL const ElementType* types, double rate,
        int elements, int stride, GLOBAL double* bond, GLOBAL double* told) {
   FOR_ITEMS(t) {
@@ -483,7 +488,7 @@ KERNEL bonds(OF_GROUP GLOBAL const double* motion, GLOBAL const int* kind, GLOBA
   }
 }
 
-// The force on every element: of its two bonds, of the contact and of its viscosity.
+// Adds up, for every element, the forces and torques of its two bonds, of the contact and of the viscosity.
 KERNEL collect(OF_GROUP GLOBAL const double* bond, GLOBAL const int* kind, GLOBAL const float4* contact_force,
        GLOBAL const float4* contact_torque, int elements, int stride, GLOBAL double* force, GLOBAL double* told) {
   FOR_ITEMS(t) {
@@ -504,9 +509,9 @@ KERNEL collect(OF_GROUP GLOBAL const double* bond, GLOBAL const int* kind, GLOBA
 
 // --- what the host is told ----------------------------------------------------------------------------
 
-// Of each group of elements: the largest of some columns and the sum of the others, in a fixed order. The sum of the
-// speeds alone is sure to be NaN or infinite where a velocity is, and that of the changes where a place is. Of the
-// bonds that slip, the first.
+// For each group of elements: the largest speeds and displacement, the first slipping bond, and the sums of the other
+// columns, in a fixed order. A largest value may lose a NaN. The sums of the squared speeds and of the displacements are
+// NaN or infinite whenever a velocity or a position is.
 KERNEL summary(OF_GROUP GLOBAL const double* told, int elements, int stride, int groups, GLOBAL double* out) {
   LOCAL double sums[SUMMARY * GROUP];
   FOR_ITEMS(t) {
@@ -535,7 +540,7 @@ KERNEL summary(OF_GROUP GLOBAL const double* told, int elements, int stride, int
   }
 }
 
-// Rows of 6 numbers from the columns of force, behind `before` numbers.
+// Copies the force and torque of the elements `which` into `rows`, six numbers for each element, from place `before` on.
 KERNEL get_force(OF_GROUP GLOBAL const double* force, GLOBAL const int* which, int count, int stride, int before,
        GLOBAL double* rows) {
   FOR_ITEMS(t) {

@@ -8,7 +8,7 @@
 #define MAX_NODES 12
 #define MAX_TYPES 6
 
-// What is known of an element: its type, whether it is bonded to the next one, whether the host moves it.
+// Bits of `kind`: the type of the element's tube; the element is bonded to the next one; the host moves the element.
 #define KIND_TYPE 0xff
 #define KIND_BONDED 0x100
 #define KIND_HOSTED 0x200
@@ -18,7 +18,7 @@ enum { TOLD_SPEED2, TOLD_SPIN2, TOLD_MOVED, TOLD_TURN, TOLD_TURN_Z, TOLD_POWER, 
 enum { SUM_SPEEDS = TOLD, SUM_MOVED, SUMMARY };
 #define NO_ELEMENT 2147483647
 
-// One type of tube, for its bonds and its motion: the names of BondStiffness and Anharmonic.
+// One type of tube. The members have the names and units of TubeType, BondStiffness and Anharmonic.
 typedef struct {
   double mass, inertia, length;
   double stretch, bend, twist, shear_share;
@@ -27,14 +27,14 @@ typedef struct {
   int anharmonic;  // 0 or 1
 } ElementType;
 
-// The nodes of one type of tube, from the centre of an element, in units.
+// Places of the nodes on an element of one type of tube, from its centre, in units of LineTables::unit.
 typedef struct {
   float s[MAX_NODES];
-  float rim;  // the last one's
+  float rim;  // place of the last node
   int count;
 } NodeRow;
 
-// RadialTable<float, SEGMENTS, TERMS> of two types of tubes; weight: of a pair of nodes.
+// RadialTable<float, SEGMENTS, TERMS> for two types of tubes. A pair of nodes has the weight `weight`.
 typedef struct {
   float d[TERMS * SEGMENTS];
   float scale, shift, core2, cutoff2, unit, rest, v1, v2, weight;
@@ -43,26 +43,26 @@ typedef struct {
 typedef struct {
   PairTable pair[MAX_TYPES * MAX_TYPES];
   NodeRow row[MAX_TYPES];
-  double cutoff[MAX_TYPES * MAX_TYPES];  // nm, of nodes
+  double cutoff[MAX_TYPES * MAX_TYPES];  // nm, distance of two nodes
   double unit;                           // nm
 } LineTables;
 
-// How far the list of neighbours reaches (nm): centres of elements, those within the viscosity, and its margin.
+// nm: the largest distance of the centres of listed elements, the same for the viscosity alone, and the list's margin.
 typedef struct {
   double centres, viscosity, skin;
 } ListReach;
 
-#define NEAR 0.05  // nm beyond the cutoff, of neighbours that stand first in the list
+#define NEAR 0.05  // nm; neighbours with a node no farther beyond the cutoff stand first in the list
 
 #define BUCKET(x, y, z, buckets) \
   ((int)(((unsigned)(x) * 73856093u ^ (unsigned)(y) * 19349663u ^ (unsigned)(z) * 83492791u) & (unsigned)((buckets) - 1)))
 
-// ContactViscosity; unit: of coordinates, nm.
+// The parameters of ContactViscosity. per_width = 1/(outer - inner); unit: nm, of the coordinates.
 typedef struct {
   float eta, inner, outer, per_width, unit;
 } Viscosity;
 
-// TwistOfAll, and how far points are from the centre of their element.
+// The parameters of TwistOfAll. lever: nm, the largest distance of a node from the centre of its element.
 typedef struct {
   double x, y, middle, sine, slope, most, lever;
 } TwistSince;

@@ -19,7 +19,7 @@ void Simulation::use_device(const std::string& name) {
   device_.stepper = std::make_shared<DeviceStepper>(topology_, interaction_, name);
 }
 
-// The loads act on few elements, as a rule; and the gauges are on the ends, which the host must follow.
+// The host keeps the elements that loads act on or read, and the ends, which the gauges follow: few, as a rule.
 void Simulation::hand_over() {
   if (device_.goes_on) return;
   std::vector<int> hosted = loaded_;
@@ -47,7 +47,7 @@ const NeighbourList& Simulation::list() const {
   return list_;
 }
 
-// The state is the same, wherever it is: who looks at it cannot tell.
+// Const: a caller sees the same state, whether the device or this processor holds it.
 void Simulation::fetch() const {
   if (!device_.ahead && !device_.energies_missing) return;
   auto& self = const_cast<Simulation&>(*this);

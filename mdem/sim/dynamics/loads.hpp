@@ -58,7 +58,7 @@ class Load {
   virtual ~Load() = default;
   virtual std::shared_ptr<Load> copy() const = 0;
   virtual Order order() const { return Order::force; }
-  // What else it looks at: of the state it reads nothing but these and `elements`.
+  // The elements that the load reads besides `elements`. It must read no others.
   virtual std::vector<int> reads(const Topology&) const { return {}; }
 
   // Appends the forces and torques at this time.

@@ -66,7 +66,7 @@ class Simulation {
   const LoadsAndConstraints& loads() const { return loads_; }
   const State& state() const { return fetch(), state_; }
   const Forces& forces() const { return fetch(), forces_; }
-  // Those of state(), which a device need not be asked for.
+  // Time and step of state(), without a copy of the state from a device.
   double time() const { return state_.time; }
   std::int64_t step_count() const { return state_.step; }
   const NeighbourList& list() const;
@@ -90,8 +90,9 @@ class Simulation {
   void use_loads(LoadsAndConstraints loads);
   // From the next step on; none: no bath. Its heat so far stays in the account.
   void use_thermostat(std::shared_ptr<const Thermostat> thermostat);
-  // From the next step on a device moves the elements that no load acts on (sim/device/device.hpp has the names). The
-  // energies are still computed here, where they are asked for. Throws std::invalid_argument where it cannot.
+  // A device moves the elements that no load acts on, from the next step on. open_device() knows the names of devices. The
+  // simulation itself still computes the energies, when a caller asks for them. Throws std::invalid_argument where there
+  // is no such device, or where the device cannot compute the scene.
   void use_device(const std::string& name);
   const DeviceStepper* device() const { return device_.stepper.get(); }
   // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
@@ -147,7 +148,8 @@ class Simulation {
 
   double part_step() const { return time_step_ / divided_; }
   void step_once(bool energies);
-  // With a device: its newest state and forces are here too; and from here on this processor has them.
+  // fetch() copies the newest state and forces from the device. After come_back() this processor moves all elements, until
+  // hand_over() gives them to the device again.
   void fetch() const;
   void come_back();
   void hand_over();
@@ -207,7 +209,7 @@ class Simulation {
   Rest rest_;
   double list_seconds_ = 0, integration_seconds_ = 0;
 
-  // A copy of a simulation has no device. It is made where the state is here as well.
+  // A copy of a simulation has no device. Copying is an error while the device has a newer state.
   struct OwnDevice {
     std::shared_ptr<DeviceStepper> stepper;  // its own
     bool goes_on = false;           // from where it is, with the loads and gauges of now
