@@ -11,6 +11,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 constexpr double right_angle = 0.5 * units::pi;
 
@@ -218,5 +219,6 @@ TEST(PaperFit, ThinTube) {
 
 TEST(PaperFit, NeedsALength) { EXPECT_THROW(fit_paper({}, shell(0.6785), 0), std::invalid_argument); }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

@@ -12,6 +12,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 constexpr double pN = 1e-3 * units::nN_nm, lattice = 0.2493;
 
@@ -143,5 +144,6 @@ TEST(PairCommands, RefuseWhatTwoTubesCannotHave) {
   EXPECT_THROW(pair_commands(own, AtomLaw()), InputError);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

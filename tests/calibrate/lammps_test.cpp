@@ -20,6 +20,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -317,5 +318,6 @@ TEST_F(Lammps, UserPotentialHasPairLinesOnly) {
   EXPECT_THROW(user_potential(folder + "/none"), InputError);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

@@ -12,6 +12,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 const double bond = graphene_lattice_constant / std::sqrt(3.0);
 
@@ -200,5 +201,6 @@ TEST(Lattice, HugeTubesAreCheapAndExact) {
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5.0);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

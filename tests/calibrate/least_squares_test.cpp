@@ -13,6 +13,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -353,5 +354,6 @@ TEST(LeastSquares, AsManyDataAsParametersHaveNoError) {
   EXPECT_THAT(f.undetermined, IsEmpty());
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

@@ -13,6 +13,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
 
@@ -190,5 +191,6 @@ TEST(UniversalLaw, ScalesWithEpsilonAndRefusesAnotherCutoff) {
   EXPECT_FALSE(universal_law(law));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

@@ -16,6 +16,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -497,5 +498,6 @@ TEST(StandardErrors, CoverTheEnergyOfARope) {
   std::printf("within one error %d, within two %d of %d\n", within_one, within_two, repeats);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

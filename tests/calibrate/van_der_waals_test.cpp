@@ -10,6 +10,7 @@
 
 namespace ropewalk::calibrate {
 namespace {
+namespace UNIT {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double right_angle = 0.5 * units::pi;
@@ -242,5 +243,6 @@ TEST(VanDerWaals, WrongInputIsRefused) {
   EXPECT_THROW(parallel_energy_of_atoms({}, {}, tube, 1.1, 0, 0), std::invalid_argument);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::calibrate

@@ -8,6 +8,7 @@
 #include "outputs_page.hpp"
 
 namespace {
+namespace UNIT {
 
 using ropewalk::test::Outcome;
 using ropewalk::test::slurp;
@@ -198,4 +199,5 @@ TEST_F(Calibrate, AFitOfTorsionTakesTheShearWithIt) {
   EXPECT_NEAR(kGA("twice.toml").get<double>() / kGA("cnt-5-5-tersoff").get<double>(), 2, 0.02);
 }
 
+}  // namespace UNIT
 }  // namespace

@@ -9,6 +9,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 using Json = nlohmann::json;
 
@@ -569,5 +570,6 @@ TEST_F(Campaign, RestComesFromBothSides) {
   EXPECT_NE(no_rope.err.find("7 tubes or more"), std::string::npos) << no_rope.err;
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

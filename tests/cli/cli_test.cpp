@@ -20,6 +20,7 @@
 namespace fs = std::filesystem;
 
 namespace {
+namespace UNIT {
 
 using ropewalk::test::Outcome;
 using ropewalk::test::slurp;
@@ -1170,4 +1171,5 @@ TEST_F(Cli, CompareSetsSideBySide) {
   EXPECT_TRUE(both.at(1).at("bond.EA").at("standard_error").is_null());
 }
 
+}  // namespace UNIT
 }  // namespace

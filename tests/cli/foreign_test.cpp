@@ -7,6 +7,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::Outcome;
 using test::slurp;
@@ -132,5 +133,6 @@ TEST_F(Foreign, TooManyOpenFilesAreSaidToBeSo) {
   EXPECT_THAT(r.err, HasSubstr("ulimit -n")) << r.err;
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -204,5 +205,6 @@ TEST_P(HostileScenes, EndWithOneClearLine) {
 INSTANTIATE_TEST_SUITE_P(Scenes, HostileScenes, ::testing::ValuesIn(scenes),
                          [](const auto& info) { return std::string(info.param.name); });
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

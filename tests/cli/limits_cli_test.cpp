@@ -14,6 +14,7 @@
 #include "model/units.hpp"
 
 namespace {
+namespace UNIT {
 
 using ropewalk::LogRow;
 using ropewalk::test::Outcome;
@@ -338,4 +339,5 @@ TEST_F(Limits, AShockIsForeseenAndSeen) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace

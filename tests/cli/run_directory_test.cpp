@@ -11,6 +11,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
@@ -219,5 +220,6 @@ TEST_F(RunDirectoryOf, LeftOverPartsBlockNothing) {
   EXPECT_EQ(run("run s.toml --out d --quiet --force").code, 2);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

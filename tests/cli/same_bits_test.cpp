@@ -12,6 +12,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 struct BitsScene {
   const char* name;
@@ -92,5 +93,6 @@ std::string name_of(const ::testing::TestParamInfo<BitsScene>& info) { return in
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBits, ::testing::ValuesIn(scenes), name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBitsOfSets, ::testing::Values(scenes[0], scenes[2]), name_of);
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

@@ -8,6 +8,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 class FollowingStep : public Cli {
  protected:
@@ -74,5 +75,6 @@ TEST_F(FollowingStep, EndsWhereNoStepHelps) {
   EXPECT_TRUE(fs::exists(dir / "d" / "failed-state.csv"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

@@ -9,6 +9,7 @@
 #include "outputs_page.hpp"
 
 namespace {
+namespace UNIT {
 
 using ropewalk::test::Outcome;
 using ropewalk::test::slurp;
@@ -168,4 +169,5 @@ TEST_F(Validate, ChartCountsInstructions) {
   EXPECT_NE(slurp(dir / "c" / "chart.html").find("instructions per ns"), std::string::npos);
 }
 
+}  // namespace UNIT
 }  // namespace

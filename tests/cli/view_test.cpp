@@ -16,6 +16,7 @@
 #include "io/log.hpp"
 
 namespace {
+namespace UNIT {
 
 using ropewalk::test::Outcome;
 using ropewalk::test::slurp;
@@ -316,4 +317,5 @@ TEST_F(View, FfmpegTakesTheMovie) {
   EXPECT_EQ(slurp(dir / "m.mp4").substr(4, 4), "ftyp");
 }
 
+}  // namespace UNIT
 }  // namespace

@@ -6,6 +6,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 constexpr double force_tolerance = 1e-12, motion_tolerance = 1e-11;
 
@@ -184,5 +185,6 @@ TEST_P(FiveStatesTest, TwoHundredStepsAgree) {
 INSTANTIATE_TEST_SUITE_P(All, FiveStatesTest, ::testing::ValuesIn(five_states()),
                          [](const auto& info) { return std::string(info.param.name); });
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

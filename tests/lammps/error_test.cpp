@@ -6,6 +6,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 struct Mistake {
   const char* name;
@@ -190,5 +191,6 @@ TEST_F(LammpsErrors, AnImportThatFailsLeavesTheRunAsItWas) {
   EXPECT_EQ(run("import out").code, 0) << slurp(dir / "stderr.txt");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

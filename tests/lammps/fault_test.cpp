@@ -3,6 +3,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 class Faults : public Lammps {
  protected:
@@ -47,5 +48,6 @@ TEST_F(Faults, ImportKilledAtAnyCall) {
     }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

@@ -8,6 +8,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 // In double precision, as LAMMPS has it.
 std::string rope(std::string tables, const std::string& run = "duration_ps = 100\n") {
@@ -520,5 +521,6 @@ TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {
   EXPECT_EQ(slurp(dir / "out/log.csv"), log) << "nothing is written";
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

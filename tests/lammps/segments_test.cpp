@@ -6,6 +6,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 // A grid never finds a smaller distance, and one almost as small.
 TEST(Segments, DistanceIsTheSmallest) {
@@ -30,5 +31,6 @@ TEST(Segments, DistanceIsTheSmallest) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

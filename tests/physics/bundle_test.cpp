@@ -14,6 +14,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 constexpr double spacing = 1.713;
 
@@ -579,5 +580,6 @@ TEST(SpinRelaxation, TakesAwayTwistAndNothingElse) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

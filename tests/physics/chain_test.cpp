@@ -13,6 +13,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::element_length;
 
@@ -347,5 +348,6 @@ TEST(ChainTwist, TurnsAreCountedBelowTheLimit) {
   EXPECT_NEAR(total, 40 * std::asin(0.3), 1e-4);  // almost two turns, none forgotten
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -21,6 +21,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -444,5 +445,6 @@ TEST(Device, SaysWhereTheMotionBlewUp) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -13,6 +13,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using Is = GripAxis::Is;
 
@@ -310,5 +311,6 @@ TEST(Gauges, GoOnWithTheSameBitsAfterACheckpoint) {
   EXPECT_NE(a[upper_end].work, 0);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

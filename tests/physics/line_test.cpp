@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 LineContact contact(double radius_i, double radius_j) {
   const LineDensity density = test::line_density(radius_i, radius_j);
@@ -214,5 +215,6 @@ TEST(LineBundle, RelaxationLeavesTheSaddleOfARopeFarAboveItsBucklingLoad) {
   EXPECT_GT(s.forces().energy.bend, 100);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

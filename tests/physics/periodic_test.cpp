@@ -21,6 +21,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -548,5 +549,6 @@ TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
               HasSubstr("follow it in time"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 const std::string path = ROPEWALK_SOURCE_DIR "/data/scenes/test.toml";  // data is looked for beside it
 
@@ -147,5 +148,6 @@ TEST(Refined, ClampsHoldTheTubeAtTheSamePlaces) {
   EXPECT_NEAR(ends[upper_end].turned - ends[lower_end].turned, whole, 1e-3 * whole);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 Scene rope_scene(int tubes, double length, double perturbation = 0) {
   Scene scene;
@@ -88,5 +89,6 @@ TEST(UntwistedRope, TimeStepLimitHoldsForARope) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

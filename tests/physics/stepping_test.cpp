@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 struct Bundle {
   Topology topology = test::published_topology();
@@ -127,5 +128,6 @@ TEST(ScaledMass, LeavesTheEndStateAlone) {
   EXPECT_LT(largest_distance(light, slow), 1e-6 * largest_distance(light, start));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -20,6 +20,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::element_length;
 constexpr double room = 300;  // K
@@ -312,5 +313,6 @@ TEST(Verlet, SamplesOscillatorsExactlyAtAnyStableStep) {
   EXPECT_NEAR(v2 / steps, 1 - w2 * dt * dt / 4, 0.01);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

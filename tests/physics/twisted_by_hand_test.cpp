@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 Scene scene_of(const std::string& text) {
   return scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n" + text, "scene.toml");
@@ -149,5 +150,6 @@ TEST(LeftHandedTwist, IsTheMirrorImage) {
   EXPECT_GT(most_twist, 20);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 constexpr double room = 300;  // K
 
@@ -118,5 +119,6 @@ TEST(HeatLeft, IsWhatDampingLeavesOfTheEnergy) {
   EXPECT_EQ(heat_left(time_step_limit(chain.topology, {}, 0), 100), 1);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -15,6 +15,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 enum class Kind { paper, line, mixed };
 
@@ -867,5 +868,6 @@ TEST(NeighbourList, SparseSceneNeedsNoHugeGrid) {
   list.build(topology, p, Vec3Array(2));  // ends, without memory for a grid of that size
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -27,6 +27,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -1101,5 +1102,6 @@ TEST(Report, ShowsSixOfManyTimes) {
   EXPECT_EQ(count_of(html, "class=\"cut\""), 6u);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -21,6 +21,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using Eigen::Vector2d;
 using testing::Each;
@@ -933,5 +934,6 @@ TEST(Means, AreThoseOfAllLooks) {
   EXPECT_DOUBLE_EQ(means.values().at("square"), 41.0 / 3);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -25,6 +25,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -421,5 +422,6 @@ TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
   EXPECT_LT(angle.error(), 0.05);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -37,6 +37,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -1033,5 +1034,6 @@ TEST(StartWave, BendsStatesAsItBendsRopes) {
     }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

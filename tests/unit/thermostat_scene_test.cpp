@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -74,5 +75,6 @@ TEST(ThermostatTable, RefusesWhatDoesNotGoWithIt) {
   expect(run + "temperature_K = 300\ncoupling_per_ps = 1\nmethod = \"berendsen\"\n", "thermostat.method");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

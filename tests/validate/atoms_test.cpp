@@ -15,6 +15,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 using test::check_of;
 
@@ -88,5 +89,6 @@ TEST(TubeBend, ABrokenReferenceIsNamedAndMakesNoVerdict) {
   EXPECT_EQ(remark_of(whole, "are not compared"), "");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

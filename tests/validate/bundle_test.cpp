@@ -6,6 +6,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 using test::check_of;
 
@@ -27,5 +28,6 @@ TEST(WarmBundle, MissesWhatTheWallsOfTheAtomsDo) {
   EXPECT_TRUE(check_of(result, "loss of cohesion with that of vibrating walls").holds());
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

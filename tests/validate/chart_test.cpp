@@ -19,6 +19,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -439,5 +440,6 @@ TEST_F(Chart, ComesOutWholeAndIsKept) {
   EXPECT_EQ(read_point(point(default_model)).values, ours.values) << "only times differ";
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

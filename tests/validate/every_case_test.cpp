@@ -13,6 +13,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 struct Trial {
   const Case* validation_case;
@@ -151,5 +152,6 @@ INSTANTIATE_TEST_SUITE_P(Cases, ValidationCase, ::testing::ValuesIn(trials_witho
 INSTANTIATE_TEST_SUITE_P(Cases, WrongParameter, ::testing::ValuesIn(trials_that_turn_red()), test_name);
 INSTANTIATE_TEST_SUITE_P(Cases, UnrelatedParameter, ::testing::ValuesIn(trials_that_stay_green()), test_name);
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

@@ -10,6 +10,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 ParameterSet shipped() { return test::shipped("cnt-10-10-tersoff"); }
 
@@ -86,5 +87,6 @@ TEST(OtherCodes, DrivenRopeRests) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

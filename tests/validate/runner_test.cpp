@@ -17,6 +17,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -327,5 +328,6 @@ TEST_F(StoredReference, IsHeldToAFreshOne) {
   EXPECT_TRUE(std::filesystem::exists(dir / "work/mine/pair.csv"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

@@ -7,6 +7,7 @@
 
 namespace ropewalk::validate {
 namespace {
+namespace UNIT {
 
 TEST(StabilityLimit, IsFoundByBisectionAndNotANumberWhereThereIsNone) {
   const auto beyond_two = [](double x) { return x > 2; };
@@ -15,5 +16,6 @@ TEST(StabilityLimit, IsFoundByBisectionAndNotANumberWhereThereIsNone) {
   EXPECT_TRUE(std::isnan(limit_between(beyond_two, 0, 1)));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

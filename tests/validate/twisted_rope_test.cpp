@@ -13,6 +13,7 @@
 namespace ropewalk::validate {
 
 namespace {
+namespace UNIT {
 
 TEST(TwistedRope, DrawsItsEnergiesItsMomentAndTheirResiduals) {
   EXPECT_EQ(test::run(find_case("rope-7-long")).figures.size(), 5u);
@@ -89,5 +90,6 @@ TEST(TwistedRope, UntwistedElementsCarryNoMoment) {
               0.02 * (states[1].total - states[0].total));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::validate

@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 // A sheet of tubes as long as twice the distance between samples: their ends, which cost more, are no more frequent
 // among these than among all.
@@ -34,5 +35,6 @@ TEST(RadialCount, OfSomeElementsIsThatOfAll) {
   EXPECT_NEAR(some.spans, all.spans, 0.05 * all.spans);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

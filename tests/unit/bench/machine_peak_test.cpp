@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 // Each chain tends to 0.25 / (1 - 0.5), and the sum of all is left.
 template <class T>
@@ -66,5 +67,6 @@ TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
   EXPECT_GT(per_element(line), per_element(apart) + 0.5 * sizeof(NeighbourSpan));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

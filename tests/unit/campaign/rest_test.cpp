@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -117,5 +118,6 @@ TEST(RestTheory, LeftHandedRopesBeginWoundToTheLeft) {
   EXPECT_EQ(sweep("hold_ps = 9\nhand = \"left\"\n"), right.insert(comma, "-").insert(at, "-"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -158,5 +159,6 @@ TEST(Campaigns, ShippedSweepsAreRead) {
   EXPECT_GE(sweeps, 9);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 
@@ -76,5 +77,6 @@ TEST_F(ThresholdSearches, TakesTrialsOfASweepWithOtherKeys) {
   EXPECT_NE(search.words_of(points[8]).find("no run ended"), std::string::npos);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

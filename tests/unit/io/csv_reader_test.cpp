@@ -13,6 +13,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -77,5 +78,6 @@ TEST_F(Csv, ErrorsNameTheLine) {
   EXPECT_THAT(error(std::string("1,\0\n", 4)), HasSubstr("control character"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

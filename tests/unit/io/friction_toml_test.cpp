@@ -13,6 +13,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -145,5 +146,6 @@ TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {
   EXPECT_THAT(refused("from = \"atoms\"\nend_strength_pN = 3\n"), HasSubstr("friction.end_strength_pN"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -13,6 +13,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 ParameterSet shipped(const std::string& name) {
   return read_parameters(data_directory() + "/parameters/" + name + ".toml");
@@ -141,5 +142,6 @@ TEST(Grade, TheScenesWarningsNameALossByCutoffAndUnlikeTubes) {
   EXPECT_NE(warnings(scene)[0].find("Q_delaunay needs no distance"), std::string::npos);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -23,6 +23,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::outputs_table;
 
@@ -49,5 +50,6 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`rope.state` and `lammps.states`"), columns_markdown(lammps_state_columns()));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

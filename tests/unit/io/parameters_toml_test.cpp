@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -83,5 +84,6 @@ TEST(MeasuredText, HasAsManyDigitsAsTheErrorAllows) {
   EXPECT_EQ(measured_text(-3.2e-13, 2.5e-8), "0 ± 2.5e-08");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -18,6 +18,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 TEST(PlainText, ControlCharactersAreThoseOfUnicode) {
   for (int c = 0; c < 0x20; ++c) EXPECT_TRUE(has_control_character(std::string("a") + static_cast<char>(c))) << c;
@@ -137,5 +138,6 @@ TEST(Memory, IsThatOfTheLimit) {
   EXPECT_EQ(words.find("about 2.5 GB of memory, and "), 0u) << words;
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 TEST(PotentialSpread, IsThatOfTheShippedSets) {
   double sum = 0, squares = 0;
@@ -38,5 +39,6 @@ TEST(PotentialSpread, StandsBehindTheErrorOfTheFit) {
   EXPECT_EQ(measured_text(*find_quantity(set, "tube.radius")).find("potential"), std::string::npos);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

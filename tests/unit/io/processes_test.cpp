@@ -7,6 +7,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 int summed_by_threads() {
   int sum = 0;
@@ -34,5 +35,6 @@ TEST(Processes, HaveThreadsOfTheirOwnAfterTheirParentHadSome) {
   EXPECT_EQ(finished, 2);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -7,6 +7,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 std::vector<LogRow> log_of(int rows, const std::function<double(double)>& torque) {
   std::vector<LogRow> log(static_cast<std::size_t>(rows));
@@ -27,5 +28,6 @@ TEST(Movement, IsThatAboutALine) {
   EXPECT_EQ(movement(log_of(3, [](double t) { return std::sin(t); }), torque), 0);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -6,6 +6,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::derivative;
 using test::Random;
@@ -91,7 +92,7 @@ TEST_P(BondForms, NetTorqueVanishes) {
 
 TEST_P(BondForms, FrameRotationAndSwap) {
   const BondStiffness k = bond_of(GetParam());
-  const auto energy = [&](const BondPose& p) { return ropewalk::energy(p, k); };
+  const auto energy = [&](const BondPose& p) { return UNIT::energy(p, k); };
   Random random(5);
   for (int n = 0; n < 500; ++n) {
     const BondPose p = random_pose(random, 1.0);
@@ -230,5 +231,6 @@ TEST(Bond, StiffestFrequencyOfThePublishedChain) {
   EXPECT_NEAR(2.0 / w, 0.0483, 0.0001);  // ps
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -8,6 +8,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::derivative;
 using test::Random;
@@ -401,5 +402,6 @@ TEST(LineContact, EnergyByAFunctionIsTheEnergy) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -6,6 +6,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 #ifdef NDEBUG
 TEST(Contract, CostsNothingWhereItIsNotChecked) {
@@ -25,5 +26,6 @@ TEST(Contract, ABrokenOneEndsTheProgramWithItsPlace) {
 }
 #endif
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -16,6 +16,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -173,5 +174,6 @@ TEST(SelfContact, TheLengthMayBeTyped) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

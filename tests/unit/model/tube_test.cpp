@@ -4,6 +4,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 // Textbook values with a = 0.246 nm: armchair, zigzag and chiral.
 TEST(Tube, Armchair) {
@@ -38,5 +39,6 @@ TEST(Tube, ValidityOfIndices) {
   EXPECT_FALSE((Chirality{4, -1}.valid()));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

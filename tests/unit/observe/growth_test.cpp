@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 TEST(Growth, RateAndItsErrorOfNoisyGrowth) {
   std::vector<double> t, y;
@@ -196,5 +197,6 @@ TEST(ThresholdOfSeeds, IsNoMeanWhereSomeLieOutsideOfTheRange) {
   EXPECT_THAT(point.remarks(), ::testing::HasSubstr("1 run was ended by a [[stop]] of the scene"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::published_bond;
 using test::published_topology;
@@ -165,5 +166,6 @@ TEST(LimitKinds, AreToldInPlainWords) {
   EXPECT_STREQ(limit_kinds()[5].what, "the tube is pressed into another one by");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::ElementsAre;
 
@@ -85,5 +86,6 @@ TEST(TubeNetwork, FindsEveryPairOfAFilm) {
   EXPECT_EQ(touching_tubes(p.topology, p.state, 1.5), all);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

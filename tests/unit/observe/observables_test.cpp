@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 double one(const Measurement&) { return 1; }
 
@@ -139,5 +140,6 @@ TEST(Observables, FramesGiveAllButLoadsAndEnergies) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

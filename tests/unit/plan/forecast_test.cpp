@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -66,5 +67,6 @@ TEST(QuasiStatic, WhatIsTwistedFromTheStartDoesNotTurn) {
   EXPECT_FALSE(quasi_static(scene, prepare(scene)));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -14,6 +14,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using Complex = std::complex<double>;
 using Eigen::MatrixXcd;
@@ -174,5 +175,6 @@ TEST(HelixTheory, IsToldBeforeARun) {
                              "rope.toml")));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

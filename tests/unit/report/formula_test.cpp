@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -177,5 +178,6 @@ TEST(Formulas, DepthIsLimited) {
   EXPECT_THAT(with_formulas("`((((((((x))))))))`"), HasSubstr("<math>"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

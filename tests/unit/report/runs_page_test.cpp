@@ -7,6 +7,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 std::vector<LogRow> log_of(const std::vector<double>& times, double value) {
   std::vector<LogRow> log(times.size());
@@ -38,5 +39,6 @@ TEST(MeansOfRuns, OfRelaxationsAreThoseOfTheirEnds) {
   EXPECT_EQ(mean_of("a", {log_of({0, 0, 0}, 0)}).log.size(), 3u) << "of one alone every row is drawn";
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

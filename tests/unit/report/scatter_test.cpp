@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -138,5 +139,6 @@ TEST(Scatter, AFilledLineIsAnAreaWithItsNameInIt) {
   EXPECT_NEAR(at_y - 4, y[1] + 4.0 / 9 * (y[0] - y[1]), 0.2) << "in logarithms";
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using testing::HasSubstr;
 
@@ -102,5 +103,6 @@ TEST(Tensile, TableAndFigureHaveMeansAndErrors) {
   EXPECT_THAT(part, HasSubstr("3.30 ± 0.30"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -15,6 +15,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using Frames = std::vector<std::vector<double>>;
 
@@ -183,5 +184,6 @@ TEST(ViewFiles, AreTheFilesOfTheTree) {
   EXPECT_EQ(view_js, scripts);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -7,6 +7,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 constexpr double right_angle = 0.5 * units::pi;
 
@@ -69,5 +70,6 @@ TEST(FilmTube, LiesInTheGrooveAndOnAnEnd) {
   EXPECT_NEAR((end - Vector3(10.6, 0, 0)).norm(), 1, 1e-9);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -18,6 +18,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -250,5 +251,6 @@ TEST(FinerScene, SaysWhyNot) {
   EXPECT_THAT(why_not_finer(paper, prepare(paper).topology), HasSubstr("law \"paper\""));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -14,6 +14,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 class LammpsFiles : public ::testing::Test {
  protected:
@@ -179,5 +180,6 @@ TEST_F(LammpsFiles, RowsThatLammpsDoesNotWriteAreRefused) {
   EXPECT_THROW(read_start(dir), InputError);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

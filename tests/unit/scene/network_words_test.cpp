@@ -9,6 +9,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -32,5 +33,6 @@ TEST(NetworkWords, OfAFilm) {
 
 TEST(NetworkWords, OfNoFilm) { EXPECT_EQ(words_of("[rope]\ntubes = 7\nlength_nm = 20\n"), ""); }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

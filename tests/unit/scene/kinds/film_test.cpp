@@ -15,6 +15,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -265,5 +266,6 @@ TEST(Film, WrongKeysAreRefused) {
               HasSubstr("chain: stands beside [film]"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -22,6 +22,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 using units::degree;
@@ -213,5 +214,6 @@ TEST(Plies, RefuseWhatCannotBePlaced) {
               HasSubstr("plies.length_nm: asks for"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -25,6 +25,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -355,5 +356,6 @@ TEST(RopePacking, OutermostTubesAreThoseOfTheSurface) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

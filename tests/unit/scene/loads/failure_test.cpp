@@ -19,6 +19,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -221,5 +222,6 @@ TEST(Failure, BadOnesAreRefused) {
   EXPECT_THAT(log_header(), ::testing::Not(HasSubstr("failure_eV")));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

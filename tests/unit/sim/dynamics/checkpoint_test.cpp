@@ -10,6 +10,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 Simulation bundle() {
   Topology topology = test::published_topology();
@@ -46,5 +47,6 @@ TEST(Checkpoint, WithNumbersThatNoRunHasIsRefused) {
   EXPECT_EQ(s.serialise(), good);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -14,6 +14,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::element_length;
 
@@ -140,5 +141,6 @@ TEST(Modes, HeldUnknownsDoNotMove) {
   EXPECT_NEAR(lowest, frequency, 0.03 * frequency);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

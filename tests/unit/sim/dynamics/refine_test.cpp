@@ -8,6 +8,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using test::element_length;
 using test::published_topology;
@@ -306,5 +307,6 @@ TEST(Halved, ATubeOfOneElementIsCutInItsMiddle) {
   EXPECT_LT((f.velocity[0] - s.velocity[0]).norm(), 1e-10);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

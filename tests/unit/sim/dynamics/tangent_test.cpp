@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -151,5 +152,6 @@ TEST(FreeUnknowns, AreThoseThatNoConstraintHolds) {
       << "the centre of a grip that is held ties its elements together";
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

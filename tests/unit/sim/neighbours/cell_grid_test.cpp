@@ -12,6 +12,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 // Places at random in a box (nm) at `corner`.
 Vec3Array scattered(std::size_t count, const Vector3& box, const Vector3& corner) {
@@ -77,5 +78,6 @@ TEST(CellGrid, NothingIsNearWhatIsNotFinite) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

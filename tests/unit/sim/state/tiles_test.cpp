@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 struct Scene {
   Topology topology = test::published_topology();
@@ -139,5 +140,6 @@ TEST(Tiles, TakeFewElementsAndLostOnes) {
   EXPECT_EQ(elements, lost.topology.elements());
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

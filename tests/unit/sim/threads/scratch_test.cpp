@@ -4,6 +4,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 TEST(Scratch, HasNoMoreThanAnEighthToSpare) {
   std::vector<int> v;
@@ -24,5 +25,6 @@ TEST(Scratch, IsNotMadeAnewForALittleLess) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

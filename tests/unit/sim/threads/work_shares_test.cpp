@@ -5,6 +5,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 TEST(WorkShares, EveryPieceIsTakenOnce) {
   WorkShares shares;
@@ -26,5 +27,6 @@ TEST(WorkShares, AThreadBeginsWithItsOwnAndThenTakesTheRest) {
   EXPECT_EQ(order, (std::vector<int>{3, 4, 5, 2, 1, 0}));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 // Three ranges of two tubes.
 struct Rope {
@@ -111,5 +112,6 @@ TEST(LineNodes, PositionsAndForcesOfAnyNumberForEveryInstructionSet) {
   use_instructions("");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 struct Read {
   double energy = 0, force = 0;  // eV/nm^2, eV/nm^3
@@ -131,5 +132,6 @@ TEST(RadialTable, PiecesMeet) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -18,6 +18,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -364,5 +365,6 @@ TEST(DryFriction, BadOnesAreRefused) {
   EXPECT_THAT(log_header(), HasSubstr(",friction_eV"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -23,6 +23,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -313,5 +314,6 @@ TEST(Links, HaveTheirColumnsInTheLog) {
   EXPECT_THAT(scene_key_help(), HasSubstr("[[links]]"));
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -16,6 +16,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 const LennardJones graphene{2.84e-3, 0.34, 1.2};
 
@@ -207,5 +208,6 @@ TEST(TubeEnds, DoNotMeetBesideOneAnother) {
   EXPECT_LT(ends.energy(s), -0.1);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk
