@@ -16,6 +16,7 @@
 
 namespace ropewalk::test {
 namespace {
+namespace UNIT {
 
 using ::testing::HasSubstr;
 
@@ -55,8 +56,10 @@ class Faults : public Cli {
     return std::stol("0" + slurp(dir / "count"));
   }
 
-  // All numbers, or every few of them unless the environment has ROPEWALK_ALL_FAULTS.
+  // Every call, or every few of them unless the environment has ROPEWALK_ALL_FAULTS.
   static long stride(long usual) { return std::getenv("ROPEWALK_ALL_FAULTS") ? 1 : usual; }
+  static long first(long usual) { return 1 + stride(usual) * cases_of_this_run().first; }
+  static long step(long usual) { return stride(usual) * cases_of_this_run().step; }
 
   void expect_same(const fs::path& a, const fs::path& b, const std::string& when) const {
     for (const char* name : {"log.csv", "frames.gsd", "final.csv", "limits.json"})
@@ -105,7 +108,7 @@ class Faults : public Cli {
     const long calls = calls_of(command);
     ASSERT_GT(calls, 40);
     int tried = 0;
-    for (long n = 1; n <= calls; n += stride(usual_stride)) {
+    for (long n = first(usual_stride); n <= calls; n += step(usual_stride)) {
       const std::string when = fmt::format("{} at call {} of {} of {}", how, n, calls, command);
       begin(from);
       const Outcome o = with(fmt::format("{}:{}", how, n), command);
@@ -126,7 +129,7 @@ class Faults : public Cli {
     begin(from);
     const long calls = calls_of(command);
     int tried = 0;
-    for (long n = 1; n <= calls; n += stride(usual_stride)) {
+    for (long n = first(usual_stride); n <= calls; n += step(usual_stride)) {
       const std::string when =
           fmt::format("{}{} at call {} of {} of {}", how, on ? " from" : "", n, calls, command);
       begin(from);
@@ -260,9 +263,9 @@ TEST_F(Faults, SweepKilledAndGoneOnWith) {
   const std::string sweep = "sweep w.toml --quiet -j 1 --out ";
   ASSERT_EQ(run(sweep + "whole").code, 0) << slurp(dir / "stderr.txt");
   const std::string table = slurp(dir / "whole/table.csv");
-  long n = 1;
+  long n = first(11);
   int tried = 0;
-  for (;; n += stride(11), ++tried) {
+  for (;; n += step(11), ++tried) {
     fs::remove_all(dir / "d");
     const Outcome o = with(fmt::format("kill:{}", n), sweep + "d");
     if (o.code == 0) break;  // there are no more calls
@@ -300,7 +303,7 @@ TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
     EXPECT_FALSE(whole.empty()) << command << slurp(dir / "stderr.txt");
     int tried = 0;
     for (const char* how : {"kill:{}", "ENOSPC:{}:on"})
-      for (long n = 1;; n += stride(verb.stride), ++tried) {
+      for (long n = first(verb.stride);; n += step(verb.stride), ++tried) {
         const std::string fault = fmt::format(fmt::runtime(how), n), when = fault + " in " + command;
         prepare();
         const Outcome o = with(fault, command);
@@ -618,7 +621,7 @@ TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
   ASSERT_TRUE(fs::exists(dir / "d.fine/final.csv"));
   fs::rename(dir / "d.fine", dir / "whole");
   int tried = 0;
-  for (long n = 1; n <= calls; n += stride(5), ++tried) {
+  for (long n = first(5); n <= calls; n += step(5), ++tried) {
     clear();
     with(fmt::format("kill:{}", n), "run s.toml --out d" + refine);
     Outcome o = run("resume d" + refine);
@@ -735,5 +738,6 @@ TEST_F(Faults, NobodyCanReadTheMessages) {
   }
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

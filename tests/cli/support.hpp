@@ -26,6 +26,16 @@ inline std::string slurp(const fs::path& path) {
 
 inline void spit(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
+// Of an exhaustive test, the cases first, first + step, ... from 0 on: a fifth of them where the environment has
+// ROPEWALK_FIFTH, 1 to 5, as `./check` sets it, all of them in `./check long`.
+struct Cases {
+  long first = 0, step = 1;
+};
+inline Cases cases_of_this_run() {
+  const char* fifth = std::getenv("ROPEWALK_FIFTH");
+  return fifth ? Cases{std::stol(fifth) - 1, 5} : Cases{};
+}
+
 struct Outcome {
   int code = -1;
   std::string out, err;

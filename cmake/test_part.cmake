@@ -1,0 +1,26 @@
+# Labels, time limit and cost of an entry of ctest, as words for set_tests_properties(): test_properties(OUT NAME LABEL
+# PART FIFTHS TIMES SLOWER). PART is short, long or rotating; a long entry belongs to one of FIFTHS by the hash of its
+# name. TIMES is a file of lines "SECONDS NAME": usual processor seconds. The time limit is ten times as long, and a
+# minute, times SLOWER; entries that take longer start first.
+function(test_properties out name label part fifths times slower)
+  string(MD5 hash "${name}")
+  string(SUBSTRING "${hash}" 0 7 hash)
+  list(LENGTH fifths count)
+  math(EXPR at "0x${hash} % ${count}")
+  list(GET fifths ${at} fifth)
+  set(labels "${label};short")
+  if(part STREQUAL "long")
+    set(labels "${label};long;long-${fifth}")
+  elseif(part STREQUAL "rotating")
+    set(labels "${label};short;rotating")
+  endif()
+  set(seconds 5)
+  file(STRINGS "${times}" lines)
+  foreach(line IN LISTS lines)
+    if(line MATCHES "^([0-9]+) (.*)$" AND CMAKE_MATCH_2 STREQUAL name)
+      set(seconds ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  math(EXPR limit "(60 + 10 * ${seconds}) * ${slower}")
+  set(${out} "LABELS \"${labels}\" COST ${seconds} TIMEOUT ${limit}" PARENT_SCOPE)
+endfunction()
