@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "comm.h"
-
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/state/part_of_scene.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk::lammps {
 namespace {
@@ -179,22 +179,20 @@ double RankEngine::kick(double dt) {
   const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
   const ForceRows total = rows_of(forces_);
   removed_.resize(moved_.size());
-#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::size_t k = 0; k < moved_.size(); ++k)
-    removed_[k] = ropewalk::kick(topology_, terms, total, dt, moved_[k], state_);
+  for_each(moved_.size(), state_.size() > parallel_from,
+           [&](std::size_t k) { removed_[k] = ropewalk::kick(topology_, terms, total, dt, moved_[k], state_); });
   return terms ? std::accumulate(removed_.begin(), removed_.end(), 0.0) : 0;
 }
 
 void RankEngine::move(double dt) {
   changes_.resize(moved_.size());
   fastest_of_.resize(moved_.size());
-#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (std::size_t k = 0; k < moved_.size(); ++k) {
+  for_each(moved_.size(), state_.size() > parallel_from, [&](std::size_t k) {
     const std::ptrdiff_t at = moved_[k].begin, end = moved_[k].end;
     fastest_of_[k] = ropewalk::fastest(state_, at, end);
     move_elements(state_, dt, at, end);
     changes_[k] = list_.change(state_, at, end);
-  }
+  });
   fastest_ = {};
   for (const Fastest& f : fastest_of_) {
     fastest_.speed2 = std::max(fastest_.speed2, f.speed2);

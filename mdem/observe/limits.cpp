@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/segments.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
 namespace {
@@ -143,14 +144,13 @@ Peaks peaks(const Topology& topology, const State& state, const NeighbourList& l
   std::vector<Peaks> tubes(static_cast<std::size_t>(topology.tubes()));
   const bool watch_overlap = list.pairs() > 0 && !watched.rest.empty();
   Vec3Array axes(watch_overlap ? state.size() : 0);
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (std::size_t i = 0; i < axes.size(); ++i) axes.set(i, axis_of(state.orientation[i]));
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (int t = 0; t < topology.tubes(); ++t) {
+  const bool parallel = state.size() > parallel_from;
+  for_each(axes.size(), parallel, [&](std::size_t i) { axes.set(i, axis_of(state.orientation[i])); });
+  for_each(topology.tubes(), parallel, [&](int t) {
     Peaks& own = tubes[static_cast<std::size_t>(t)];
     own = peaks_of_tube(topology, state, t, watched.limits[static_cast<std::size_t>(topology.tube_type[t])]);
     if (watch_overlap) overlap_of_tube(topology, state, axes, list, watched, t, own[overlap]);
-  }
+  });
   Peaks out;
   for (const Peaks& tube : tubes)
     for (std::size_t k = 0; k < limit_count; ++k) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "observe/centre_line.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
 namespace {
@@ -206,8 +207,7 @@ std::vector<double> tube_pressures(const Topology& topology, const State& state,
                                    const LoadingReference& reference) {
   std::vector<double> out(static_cast<std::size_t>(topology.tubes()));
   const TubePressures pressures(topology, state, *reference.law, reference.cell);
-#pragma omp parallel for schedule(dynamic)
-  for (int t = 0; t < topology.tubes(); ++t) out[static_cast<std::size_t>(t)] = pressures.of(t);
+  for_each_uneven(topology.tubes(), 1, true, [&](int t) { out[static_cast<std::size_t>(t)] = pressures.of(t); });
   return out;
 }
 
@@ -216,8 +216,7 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
   std::vector<TubeLoading> out(static_cast<std::size_t>(topology.tubes()));
   const std::vector<double> pressures =
       reference.law && reference.cell > 0 ? tube_pressures(topology, state, reference) : std::vector<double>();
-#pragma omp parallel for schedule(dynamic)
-  for (int t = 0; t < topology.tubes(); ++t) {
+  for_each_uneven(topology.tubes(), 1, true, [&](int t) {
     TubeLoading& tube = out[static_cast<std::size_t>(t)];
     const std::vector<double> pulls = tensions(topology, state, t);
     tube.tension = mean_of_middle(pulls);
@@ -226,7 +225,7 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
     tube.twist = twist_of(topology, state, t);
     tube.curvature = largest_curvature(topology, state, t);
     if (!pressures.empty()) tube.pressure = pressures[static_cast<std::size_t>(t)];
-  }
+  });
   if (!knows_slip(topology, reference))
     for (TubeLoading& tube : out) tube.slip = none;
   const Topology strands = strands_of(topology);

@@ -5,6 +5,7 @@
 #include "observe/bending.hpp"
 #include "sim/contact/contact_engine.hpp"
 #include "sim/neighbours/neighbours.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
 namespace {
@@ -21,11 +22,10 @@ void colour_contacts(const Topology& topology, const Interaction& in, const Stat
   std::vector<std::size_t> first_pair{0};
   for (int i = 0; i < topology.elements(); ++i) first_pair.push_back(first_pair.back() + list.pairs(i));
   std::vector<double> of_pair(list.pairs());
-#pragma omp parallel for schedule(dynamic, 64) if (s.size() > parallel_from)
-  for (int i = 0; i < topology.elements(); ++i) {
+  for_each_uneven(topology.elements(), 64, s.size() > parallel_from, [&](int i) {
     double* next = of_pair.data() + first_pair[static_cast<std::size_t>(i)];
     list.for_neighbours(i, [&](int j) { *next++ = energy(i, j); });
-  }
+  });
   const double* next = of_pair.data();
   for (int i = 0; i < topology.elements(); ++i)
     list.for_neighbours(i, [&](int j) {

@@ -11,6 +11,7 @@
 #include "sim/device/device.hpp"
 #include "sim/device/dialect.h"
 #include "sim/device/types.h"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
@@ -88,8 +89,7 @@ class ThisProcessor : public Device {
     ROPEWALK_EXPECTS(count <= 32);
     for (int k = 0; k < count; ++k) values[k] = arguments[k].at;
     nodes_of_kernels = shape_.nodes, types_of_kernels = shape_.types;
-#pragma omp parallel for schedule(static) if (groups > 4)
-    for (int group = 0; group < groups; ++group) kernel->run(group, values);
+    for_each(groups, groups > 4, [&](int group) { kernel->run(group, values); });
   }
 
  private:

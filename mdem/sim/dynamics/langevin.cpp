@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "model/contract.hpp"
-#include "model/units.hpp"
 #include "model/counter_random.hpp"
+#include "model/units.hpp"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
@@ -54,8 +55,8 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
   const double energy =
       -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_.value(state.time);  // (1 - c^2) kT
   const auto n = static_cast<int>(state.size());
-#pragma omp parallel for schedule(static) if (state.size() > parallel_from)
-  for (int first = 0; first < n; first += group) {
+  for_each((n + group - 1) / group, state.size() > parallel_from, [&](int block) {
+    const int first = block * group;
     Normals normal;
     draw(seed_, state.step, state.part, first, normal);
     int tube = topology.tube_of(first);
@@ -69,7 +70,7 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
       state.angular_velocity.set(i, keep * state.angular_velocity[i] +
                                         std::sqrt(energy / type.inertia) * Vector3(of[3][k], of[4][k], of[5][k]));
     }
-  }
+  });
 }
 
 }  // namespace ropewalk

@@ -14,9 +14,10 @@
 #include "sim/contact/shared/wrapped.hpp"
 #include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/blow_up.hpp"
-#include "sim/forces/kick.hpp"
 #include "sim/dynamics/verlet.hpp"
+#include "sim/forces/kick.hpp"
 #include "sim/state/motion.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
 namespace {
@@ -49,9 +50,10 @@ NumericalError blown_up(long step, int element) {
 template <class Work>
 void for_blocks(std::size_t elements, const Work& work) {
   const auto n = static_cast<std::ptrdiff_t>(elements);
-#pragma omp parallel for schedule(static) if (elements > parallel_from)
-  for (std::ptrdiff_t begin = 0; begin < n; begin += cached_elements)
-    work(static_cast<std::size_t>(begin / cached_elements), begin, std::min(begin + cached_elements, n));
+  for_each((n + cached_elements - 1) / cached_elements, elements > parallel_from, [&](std::ptrdiff_t block) {
+    const std::ptrdiff_t begin = block * cached_elements;
+    work(static_cast<std::size_t>(block), begin, std::min(begin + cached_elements, n));
+  });
 }
 std::size_t blocks_of(std::size_t elements) { return (elements + cached_elements - 1) / cached_elements; }
 
@@ -141,9 +143,9 @@ void Simulation::kick_all(double dt) {
   const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
   const ForceRows total = rows_of(forces_);
   removed_.resize(static_cast<std::size_t>(parts_.count()));
-#pragma omp parallel for schedule(static) if (state_.size() > parallel_from)
-  for (int k = 0; k < parts_.count(); ++k)
+  for_each(parts_.count(), state_.size() > parallel_from, [&](int k) {
     removed_[static_cast<std::size_t>(k)] = ropewalk::kick(topology_, terms, total, dt, parts_[k], state_);
+  });
   if (terms) account_.dissipated += std::accumulate(removed_.begin(), removed_.end(), 0.0);
 }
 

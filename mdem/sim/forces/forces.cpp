@@ -6,6 +6,7 @@
 
 #include "model/contract.hpp"
 #include "sim/forces/bonds.hpp"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 #define ROPEWALK_LOOPS "sim/forces/axes_loops-inl.hpp"
@@ -99,13 +100,12 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
     contact->compute(topology, interaction, list, state, axis_, options.energies,
                      {parts_, place, finish_block, terms_.pairs()});
   } else {
-#pragma omp parallel if (state.size() > parallel_from)
-    {
+    in_team(state.size() > parallel_from, [&] {
 #pragma omp for schedule(static)
       for (int t = 0; t < topology.tubes(); ++t) place(t);
 #pragma omp for schedule(static)
       for (int block = 0; block < parts_.blocks(); ++block) finish_block(block);
-    }
+    });
   }
   BondSum all;
   for (const BondSum& sum : sums_) add(sum, all);

@@ -9,6 +9,7 @@
 #include "model/contract.hpp"
 #include "sim/neighbours/cell_grid.hpp"
 #include "sim/neighbours/excluded.hpp"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/scratch.hpp"
 
 namespace ropewalk {
@@ -87,8 +88,7 @@ void NeighbourList::find_pairs(const Topology& topology) {
     constexpr int parts = 64;
     std::vector<std::vector<ElementSpan>> found(parts);
     std::vector<std::size_t> pairs_of_part(parts);
-#pragma omp parallel for schedule(dynamic, 1) if (p.size() > parallel_from)
-    for (int part = 0; part < parts; ++part) {
+    for_each_uneven(parts, 1, p.size() > parallel_from, [&](int part) {
       const int from = static_cast<int>(static_cast<std::int64_t>(n) * part / parts);
       const int to = static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts);
       auto& list = found[static_cast<std::size_t>(part)];
@@ -106,7 +106,7 @@ void NeighbourList::find_pairs(const Topology& topology) {
         pairs += count;
       }
       pairs_of_part[static_cast<std::size_t>(part)] = pairs;
-    }
+    });
     std::size_t total = 0;
     for (const auto& list : found) total += list.size();
     reserve_tightly(spans_, total);

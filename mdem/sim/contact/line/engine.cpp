@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 #define ROPEWALK_LOOPS "sim/contact/line/buffer_loops-inl.hpp"
@@ -85,8 +86,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Neighbo
     finish_seconds_ += omp_get_wtime() - began;
   };
   shares_.deal(static_cast<int>(list_.chunks().size()), threads);
-#pragma omp parallel num_threads(threads) if (parallel)
-  {
+  in_team(parallel, [&] {
 #pragma omp for schedule(static)
     for (int t = 0; t < topology.tubes(); ++t) tubes.place(t);
     const int thread = omp_get_thread_num();
@@ -101,7 +101,7 @@ void LineEngine::compute_all(Buffers& b, const Topology& topology, const Neighbo
 #pragma omp for schedule(static)
     for (int block = 0; block < tubes.parts.blocks(); ++block)
       if (!at_once || written_.chunks_on()[static_cast<std::size_t>(block)] == 0) finish(block);
-  }
+  });
 }
 
 void LineEngine::compute(const Topology& topology, const Interaction& in, const NeighbourList& list,

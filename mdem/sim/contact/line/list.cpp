@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/scratch.hpp"
 
 namespace ropewalk {
@@ -324,11 +325,11 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
   const int tubes = topology.tubes(), parts = std::min(tubes, 64);
   const double near_reach = pairs ? pairs->reach() : 0;
   std::vector<Found> found(static_cast<std::size_t>(parts));
-#pragma omp parallel for schedule(dynamic, 1) if (parallel)
-  for (int part = 0; part < parts; ++part)
+  for_each_uneven(parts, 1, parallel, [&](int part) {
     for (int t = static_cast<int>(static_cast<std::int64_t>(tubes) * part / parts);
          t < static_cast<int>(static_cast<std::int64_t>(tubes) * (part + 1) / parts); ++t)
       found[static_cast<std::size_t>(part)].find(topology, in, list, near_reach, t);
+  });
 
   std::size_t total = 0;
   for (const Found& part : found) total += part.spans.size();
@@ -346,12 +347,11 @@ void LineList::build(const Topology& topology, const Interaction& in, const Neig
 
   cut_into_chunks(topology, list.reference(), list.chunks().size());
   if (pairs) pairs->start(chunks_.size());
-#pragma omp parallel for schedule(dynamic, 1) if (parallel)
-  for (std::size_t c = 0; c < chunks_.size(); ++c)
-    if (!chunks_[c].own.empty()) {
-      find_ranges(topology, chunks_[c]);
-      if (pairs) pairs->list(c, LinePairs(*this, chunks_[c]));
-    }
+  for_each_uneven(chunks_.size(), std::size_t{1}, parallel, [&](std::size_t c) {
+    if (chunks_[c].own.empty()) return;
+    find_ranges(topology, chunks_[c]);
+    if (pairs) pairs->list(c, LinePairs(*this, chunks_[c]));
+  });
   largest_ = {};
   for (const LineChunk& chunk : chunks_)
     for (int LineChunk::*size : {&LineChunk::elements, &LineChunk::nodes, &LineChunk::vectors})

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/threads/for_each.hpp"
+
 namespace ropewalk {
 
 template <class T>
@@ -32,10 +34,10 @@ void place_all(const ContactInput& in, PaperElements<T>& elements) {
   const auto n = static_cast<std::ptrdiff_t>(in.state.size());
   constexpr std::ptrdiff_t block = 512;
   elements.resize(in.state.size());
-#pragma omp parallel for schedule(static) if (in.state.size() > parallel_from)
-  for (std::ptrdiff_t i = 0; i < n; i += block)
-    elements.place(in.state.position, in.axis, static_cast<std::size_t>(i),
-                   static_cast<std::size_t>(std::min(i + block, n)));
+  for_each((n + block - 1) / block, in.state.size() > parallel_from, [&](std::ptrdiff_t k) {
+    elements.place(in.state.position, in.axis, static_cast<std::size_t>(k * block),
+                   static_cast<std::size_t>(std::min((k + 1) * block, n)));
+  });
 }
 
 }  // namespace

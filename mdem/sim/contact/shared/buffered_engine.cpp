@@ -6,6 +6,7 @@
 
 #include "model/contract.hpp"
 #include "sim/contact/shared/neighbour_spans.hpp"
+#include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
 
@@ -65,20 +66,17 @@ void BufferedEngine::compute(const Topology& topology, const Interaction& intera
     stamp_ = list.stamp();
     list_seconds_ += omp_get_wtime() - began;
   }
-#pragma omp parallel for schedule(static) if (parallel)
-  for (int t = 0; t < topology.tubes(); ++t) tubes.place(t);
+  for_each(topology.tubes(), parallel, [&](int t) { tubes.place(t); });
   prepare(in);
   buffers_.resize(list.chunks().size());
-#pragma omp parallel for schedule(dynamic, 1) if (parallel)
-  for (std::size_t k = 0; k < list.chunks().size(); ++k) {
+  for_each_uneven(list.chunks().size(), std::size_t{1}, parallel, [&](std::size_t k) {
     const NeighbourList::Chunk& chunk = list.chunks()[k];
     buffers_[k].clear(static_cast<std::size_t>(chunk.written_end - chunk.written_begin));
     add_chunk(in, chunk, buffers_[k]);
     if (tubes.pairs) tubes.pairs->add(k, buffers_[k]);
-  }
+  });
   const double began = omp_get_wtime();
-#pragma omp parallel for schedule(static) if (parallel)
-  for (int block = 0; block < tubes.parts.blocks(); ++block) tubes.finish(block);
+  for_each(tubes.parts.blocks(), parallel, [&](int block) { tubes.finish(block); });
   finish_seconds_ += omp_get_wtime() - began;
 }
 

@@ -6,6 +6,7 @@
 
 #include "model/contract.hpp"
 #include "model/units.hpp"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/span.hpp"
 
 namespace ropewalk {
@@ -93,8 +94,7 @@ class DryFrictionTerm : public ForceTerm {
                n = static_cast<std::ptrdiff_t>(contacts_.size());
     frames_.resize(state.size());
     now_.resize(contacts_.size());
-#pragma omp parallel if (state.size() > parallel_from)
-    {
+    in_team(state.size() > parallel_from, [&] {
 #pragma omp for schedule(static)
       for (std::ptrdiff_t i = 0; i < elements; ++i)
         frames_[static_cast<std::size_t>(i)] = frame_of(state.orientation[static_cast<std::size_t>(i)]);
@@ -103,20 +103,17 @@ class DryFrictionTerm : public ForceTerm {
         const auto k = static_cast<std::size_t>(i);
         if (!contacts_[k].over) now_[k] = now_of(contacts_[k], state);
       }
-    }
+    });
   }
 
   // In blocks of contacts, whose sums are added up in their order whatever the threads.
   Happened advance(double, const State& state) override {
-    const auto blocks = static_cast<std::ptrdiff_t>((contacts_.size() + block - 1) / block);
-    std::vector<Advanced> advanced(static_cast<std::size_t>(blocks));
-#pragma omp parallel for schedule(static) if (contacts_.size() > parallel_from)
-    for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-      const std::size_t begin = static_cast<std::size_t>(b) * block,
-                        end = std::min(begin + block, contacts_.size());
+    std::vector<Advanced> advanced((contacts_.size() + block - 1) / block);
+    for_each(advanced.size(), contacts_.size() > parallel_from, [&](std::size_t b) {
+      const std::size_t begin = b * block, end = std::min(begin + block, contacts_.size());
       for (std::size_t k = begin; k < end; ++k)
-        if (!contacts_[k].over) advance(k, state, advanced[static_cast<std::size_t>(b)]);
-    }
+        if (!contacts_[k].over) advance(k, state, advanced[b]);
+    });
     Advanced all;
     for (const Advanced& of : advanced) {
       all.happened.lost += of.happened.lost;

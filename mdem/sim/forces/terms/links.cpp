@@ -8,6 +8,7 @@
 #include "model/contract.hpp"
 #include "model/counter_random.hpp"
 #include "sim/neighbours/cell_grid.hpp"
+#include "sim/threads/for_each.hpp"
 #include "sim/threads/span.hpp"
 
 namespace ropewalk {
@@ -192,12 +193,9 @@ class LinkTerm : public ForceTerm {
 
   void gather(const State& state) override {
     actions_.resize(acting_.size());
-    const auto n = static_cast<std::ptrdiff_t>(acting_.size());
-#pragma omp parallel for schedule(static) if (acting_.size() > parallel_from)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+    for_each(acting_.size(), acting_.size() > parallel_from, [&](std::size_t k) {
       actions_[k] = action_of(links_[acting_[k].link].at, acting_[k].a, acting_[k].b, state);
-    }
+    });
   }
 
   Happened advance(double, const State& state) override {
