@@ -4,6 +4,7 @@
 // interrupted.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <omp.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -32,19 +33,25 @@ namespace {
 
 using namespace ropewalk;
 
-// By default the OpenMP runtime spins for milliseconds while it waits, and on a machine that does other work as
-// well a step then takes up to ten times as long. Asleep at once, small ropes lose what the second core gains:
-// waking takes as long as the gaps between the parallel parts of a step. So: spin for some ten microseconds, then
-// sleep. The runtime reads its settings before main: start once more with them, unless the user has chosen
-// otherwise. (Under valgrind, set OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
-void wait_briefly(char** argv) {
+// Before steps that so many threads share (0: all that there are). By default the OpenMP runtime spins for
+// milliseconds while it waits, and on a machine that does other work as well a step then takes up to ten times as
+// long. Asleep at once, small ropes lose what the second core gains: waking takes as long as the gaps between the
+// parallel parts of a step. So: spin for some ten microseconds, then sleep. The runtime reads its settings before
+// main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
+// OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
+void wait_briefly(char** argv, int threads) {
+  if ((threads > 0 ? threads : omp_get_max_threads()) == 1) return;
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);
   give_back_cores();
   execv("/proc/self/exe", argv);  // on failure go on as we are: only speed is lost
 }
 
+// Threads of each of so many runs at a time; 0 runs: one for each core.
+int threads_beside(int jobs) { return jobs > 0 ? std::max(1, omp_get_num_procs() / jobs) : 1; }
+
 struct Verbs {
+  char** argv;
   RunArguments run;
   ResumeArguments resume;
   ObserveArguments observe;
@@ -135,7 +142,10 @@ void add_run(CLI::App& app, Verbs& v) {
   add_device(c, v.run.device, "none");
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
-  c->callback([&v] { v.code = run_command(v.run); });
+  c->callback([&v] {
+    wait_briefly(v.argv, v.run.threads);
+    v.code = run_command(v.run);
+  });
 }
 
 void add_errors(CLI::App& app, Verbs& v) {
@@ -146,7 +156,10 @@ void add_errors(CLI::App& app, Verbs& v) {
   c->add_flag("--again", v.errors.again, "Repeat also what is finished");
   c->add_flag("--json", v.errors.json, "JSON");
   c->add_flag("--quiet", v.errors.quiet, "No progress lines");
-  c->callback([&v] { v.code = errors_command(v.errors); });
+  c->callback([&v] {
+    wait_briefly(v.argv, threads_beside(v.errors.jobs));
+    v.code = errors_command(v.errors);
+  });
 }
 
 void add_compare(CLI::App& app, Verbs& v) {
@@ -183,7 +196,10 @@ void add_resume(CLI::App& app, Verbs& v) {
   c->add_flag("--accept-changes", v.resume.accept_changes,
               "Go on although the scene, the parameter set or the program is not what the run was begun with");
   c->add_flag("--quiet", v.resume.quiet, "No progress line");
-  c->callback([&v] { v.code = resume_command(v.resume); });
+  c->callback([&v] {
+    wait_briefly(v.argv, v.resume.threads);
+    v.code = resume_command(v.resume);
+  });
 }
 
 void add_observe(CLI::App& app, Verbs& v) {
@@ -392,7 +408,10 @@ void add_modes(CLI::App& app, Verbs& v) {
       ->check(CLI::Range(1e-9, 1.0));
   c->add_option("--threads", v.modes.threads, "Threads [default: all cores]")->check(thread_range());
   c->add_flag("--force", v.modes.force, "Replace existing files");
-  c->callback([&v] { v.code = modes_command(v.modes); });
+  c->callback([&v] {
+    wait_briefly(v.argv, v.modes.threads);
+    v.code = modes_command(v.modes);
+  });
 }
 
 void add_gather(CLI::App& app, Verbs& v) {
@@ -434,7 +453,10 @@ void add_plan(CLI::App& app, Verbs& v) {
   c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
       ->capture_default_str()
       ->check(number_within(Bounds::positive()));
-  c->callback([&v] { v.code = plan_command(v.plan); });
+  c->callback([&v] {
+    wait_briefly(v.argv, threads_beside(v.plan.jobs));
+    v.code = plan_command(v.plan);
+  });
 }
 
 void add_export(CLI::App& app, Verbs& v) {
@@ -483,7 +505,11 @@ void add_bench(CLI::App& app, Verbs& v) {
   for (const char* other : {"--after", "--threads", "--instructions", "--device", "--lammps"})
     parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
-  c->callback([&v] { v.code = bench_command(v.bench); });
+  c->callback([&v] {
+    wait_briefly(v.argv,
+                 std::max(v.bench.lammps, *std::max_element(v.bench.threads.begin(), v.bench.threads.end())));
+    v.code = bench_command(v.bench);
+  });
 }
 
 std::vector<std::string> listed_verbs(const CLI::App& app) {
@@ -565,6 +591,7 @@ int main(int argc, char** argv) {
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);
   Verbs verbs;
+  verbs.argv = argv;
   add_new(app, verbs);
   add_check(app, verbs);
   add_run(app, verbs);
@@ -605,7 +632,6 @@ int main(int argc, char** argv) {
     refuse_control_characters(argv);
     verb_before_help(app, argc, argv);
     hand_over_to_sibling(argv);
-    wait_briefly(argv);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return code_at_exit("ropewalk", app.exit(e));
