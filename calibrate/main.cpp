@@ -141,8 +141,11 @@ int main(int argc, char** argv) {
   verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
-  const std::vector<std::string> sets = shipped_sets();
-  add_describe(app, {"ropewalk-calibrate", version, "", nlohmann::ordered_json::object(), {{"show", sets}, {"friction", sets}}});
+  add_describe(app, [] {
+    const std::vector<std::string> sets = shipped_sets();
+    return Description{
+        "ropewalk-calibrate", version, "", nlohmann::ordered_json::object(), {{"show", sets}, {"friction", sets}}};
+  });
   catch_interrupts();
   try {
     refuse_control_characters(argv);

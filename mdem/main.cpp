@@ -567,6 +567,18 @@ nlohmann::ordered_json scenes_and_limits() {
   return {{"scene", scene}, {"limits", limits}};
 }
 
+Description description() {
+  std::vector<std::string> kinds;
+  for (const SceneTemplate& t : scene_templates()) kinds.push_back(t.name);
+  const std::vector<std::string> sets = shipped_sets();
+  return {"ropewalk",
+          version,
+          scene_key_help(),
+          scenes_and_limits(),
+          {{"--kind", kinds}, {"--parameters", sets}, {"compare", sets}},
+          {"calibrate", "validate"}};
+}
+
 // "help run" as "run --help", and "help" as "--help".
 void verb_before_help(const CLI::App& app, int argc, char** argv) {
   static char help[] = "--help";
@@ -619,15 +631,7 @@ int main(int argc, char** argv) {
   add_energy(app, verbs);
   add_bench(app, verbs);
   add_help(app, verbs);
-  std::vector<std::string> kinds;
-  for (const SceneTemplate& t : scene_templates()) kinds.push_back(t.name);
-  const std::vector<std::string> sets = shipped_sets();
-  add_describe(app, {"ropewalk",
-                     version,
-                     scene_key_help(),
-                     scenes_and_limits(),
-                     {{"--kind", kinds}, {"--parameters", sets}, {"compare", sets}},
-                     {"calibrate", "validate"}});
+  add_describe(app, description);
   try {
     refuse_control_characters(argv);
     verb_before_help(app, argc, argv);

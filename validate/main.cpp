@@ -139,7 +139,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   Verbs verbs;
   add_verbs(app, verbs);
-  add_describe(app, {"ropewalk-validate", version, "", nlohmann::ordered_json::object(), {{"--parameters", shipped_sets()}}});
+  add_describe(app, [] {
+    return Description{
+        "ropewalk-validate", version, "", nlohmann::ordered_json::object(), {{"--parameters", shipped_sets()}}};
+  });
   try {
     refuse_control_characters(argv);
     app.parse(argc, argv);

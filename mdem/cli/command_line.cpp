@@ -301,11 +301,12 @@ std::string json_description(const CLI::App& app, const Description& d) {
   return out.dump(1) + "\n";
 }
 
-void add_describe(CLI::App& app, const Description& d) {
+void add_describe(CLI::App& app, const std::function<Description()>& describe) {
   CLI::App* c = app.add_subcommand("describe")->group("");
   auto what = std::make_shared<std::string>();
   c->add_option("what", *what)->required()->check(CLI::IsMember({"man", "bash", "zsh", "fish", "json"}));
-  c->callback([&app, d, what] {
+  c->callback([&app, describe, what] {
+    const Description d = describe();
     const std::string text = *what == "man"    ? man_page(app, d)
                              : *what == "bash" ? bash_completion(app, d)
                              : *what == "zsh"  ? zsh_completion(app, d)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,7 +40,7 @@ std::string fish_completion(const CLI::App& app, const Description& d);
 // Verbs and options, with all of `more`.
 std::string json_description(const CLI::App& app, const Description& d);
 
-// Adds the verb `describe`, which prints one of them. It is not listed.
-void add_describe(CLI::App& app, const Description& d);
+// Adds the verb `describe`, which prints one of them, and makes the description then. It is not listed.
+void add_describe(CLI::App& app, const std::function<Description()>& describe);
 
 }  // namespace ropewalk
