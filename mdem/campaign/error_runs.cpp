@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/manifest.hpp"
@@ -106,10 +107,11 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   if (!again_ && fs::exists(dir.file("changed.toml")) && finished(dir, text)) return 0;
   remove_run(dir, "--again");
   fs::create_directories(base_.path + "/errors");
-  const std::string set = dir.path + ".toml";
-  write_file_atomically(set, text);
+  Draft set(dir.path + ".toml");  // for the time of the run
+  set.write(text);
   std::vector<std::string> sets;
-  for (std::size_t k = 0; k < scene_.sets.size(); ++k) sets.push_back(k == source.set ? set : base_.parameters(k));
+  for (std::size_t k = 0; k < scene_.sets.size(); ++k)
+    sets.push_back(k == source.set ? set.name() : base_.parameters(k));
   Scene scene = read_scene(base_.scene(), sets);
   if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state());
   scene.run.time_step = time_step_;
@@ -117,7 +119,6 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   VariedRunListener listener;
   const int code = tell_end(go_through(begin_run(scene, dir, {}, listener)));
   write_file_atomically(dir.file("changed.toml"), text);
-  fs::remove(set);
   return code;
 }
 

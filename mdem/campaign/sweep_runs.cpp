@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "campaign/point_runs.hpp"
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -31,6 +32,17 @@ double between(const std::vector<std::pair<double, double>>& timed, double work)
   if (above == timed.end()) return below->second * work / below->first;
   const double part = (work - below->first) / (above->first - below->first);
   return below->second + part * (above->second - below->second);
+}
+
+// What branch_off() of a killed process left. Another process is not at it: the point is locked by its messages.
+std::vector<std::string> copies_left_of(const RunDirectory& point) {
+  const fs::path whole = point.path;
+  std::vector<std::string> all;
+  for (const auto& entry : fs::directory_iterator(whole.parent_path()))
+    if (without_part(entry.path().filename().string()) == whole.filename().string() &&
+        fs::is_directory(entry.symlink_status()))
+      all.push_back(entry.path().string());
+  return all;
 }
 
 }  // namespace
@@ -88,8 +100,8 @@ void SweepRuns::branch_off(const SweepPoint& p) const {
     throw InputError({from.path, 0, ""}, "did not reach its end, and this point goes on from there",
                      "see its messages");
   remove_hardly_begun(to);
-  const std::string half = to.path + ".part";
-  remove_run({half}, "");
+  for (const std::string& left : copies_left_of(to)) remove_run({left}, "");
+  const std::string half = new_draft_folder(to.path);
   fs::copy(from.path, half, fs::copy_options::recursive);
   const RunDirectory made{half};
   const double step = read_manifest(from.manifest()).time_step_fs;
@@ -104,7 +116,7 @@ void SweepRuns::branch_off(const SweepPoint& p) const {
   m.status = "interrupted";
   m.scene = scene_of(sweep_, p).name;
   write_file_atomically(made.manifest(), manifest_json(m));
-  fs::rename(half, to.path);
+  rename_whole(half, to.path);
 }
 
 int SweepRuns::run_point(const SweepPoint& p) const {

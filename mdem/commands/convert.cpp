@@ -4,9 +4,11 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/frames/vtp.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "run/run_directory.hpp"
 
@@ -34,26 +36,39 @@ class FramesOutput : public Output {
   NewFrames frames_;
 };
 
-// A PVD file and a folder of its name with the frames.
+// A PVD file and a folder of its name with the frames, which stand beside it until all are whole.
 class ParaviewOutput : public Output {
  public:
-  ParaviewOutput(const fs::path& pvd, bool force) : pvd_(pvd), folder_(fs::path(pvd).replace_extension("")) {
+  ParaviewOutput(const fs::path& pvd, bool force)
+      : pvd_(pvd),
+        folder_(fs::path(pvd).replace_extension("")),
+        drafts_(pvd.has_parent_path() ? pvd.parent_path().string() : ".") {
     std::error_code error;
     refuse_strange(folder_.string(), true);
     if (fs::exists(folder_, error) && !fs::is_empty(folder_, error))
       refuse_existing(folder_.string(), "FILE", force);
-    fs::create_directories(folder_, error);
-    if (error) throw file_error(folder_.string(), "cannot be made", error.value());
   }
   void add(const Topology& topology, const StoredFrame& f) override {
     const std::string name = fmt::format("frame-{:09d}.vtp", f.state.step);
-    write_file_atomically((folder_ / name).string(), vtp_frame(topology, f.state, f.colours));
+    write_file_atomically(drafts_.file(name), vtp_frame(topology, f.state, f.colours));
+    names_.push_back(name);
     entries_.push_back({f.state.time, (folder_.filename() / name).string()});
   }
-  void end() override { write_file_atomically(pvd_.string(), pvd_text(entries_)); }
+  void end() override {
+    Draft pvd(pvd_.string());
+    pvd.write(pvd_text(entries_));
+    pvd.sync();
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) throw file_error(folder_.string(), "cannot be made", error.value());
+    for (const std::string& name : names_) rename_whole(drafts_.file(name), (folder_ / name).string());
+    pvd.replace();
+  }
 
  private:
   fs::path pvd_, folder_;
+  TemporaryFolder drafts_;
+  std::vector<std::string> names_;
   std::vector<PvdEntry> entries_;
 };
 

@@ -6,8 +6,8 @@
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/log.hpp"
-#include "io/processes.hpp"
 #include "model/error.hpp"
+#include "report/drawing.hpp"
 #include "run/pages/run_plate.hpp"
 
 namespace ropewalk {
@@ -27,19 +27,6 @@ std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& 
     for (const std::string& column : out.back()) column_of_log(column, {"", 0, "--curves"});
   }
   return out;
-}
-
-// PDF and PNG by librsvg's program.
-void convert(const std::string& svg, const std::string& out, const std::string& format, double zoom) {
-  const std::string draft = out + ".svg";
-  write_file_atomically(draft, svg);
-  const ProgramEnd end =
-      run_program({"rsvg-convert", "-f", format, "-z", fmt::format("{}", zoom), "-o", out, draft});
-  std::error_code ignored;
-  fs::remove(draft, ignored);
-  if (end != ProgramEnd::well)
-    throw InputError({out, 0, "-o"}, "cannot be made: rsvg-convert is missing or failed",
-                     "install librsvg2-bin, or write .svg");
 }
 
 }  // namespace
@@ -62,7 +49,7 @@ int picture_command(const PictureArguments& a) {
   if (format == ".svg")
     write_file_atomically(a.out, svg);
   else
-    convert(svg, a.out, format.substr(1), format == ".png" ? a.zoom : 1);
+    write_drawing(a.out, svg, format.substr(1), format == ".png" ? a.zoom : 1, "-o");
   fmt::print("{} written\n", a.out);
   return 0;
 }

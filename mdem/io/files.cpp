@@ -12,6 +12,7 @@
 #include <list>
 #include <utility>
 
+#include "io/draft.hpp"
 #include "io/file_group.hpp"
 
 #define XXH_INLINE_ALL
@@ -54,38 +55,18 @@ const char* remedy_for(int code) {
   }
 }
 
-// A new file in the same directory, since rename() does not cross file systems. O_EXCL: no other process has it.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& path) : fd_(-1) {
-    static std::atomic<unsigned> counter{0};
-    do {
-      name_ = fmt::format("{}{}{}-{}", path, part, ::getpid(), counter++);
-      fd_ = uninterrupted([&] { return ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
-    } while (fd_ < 0 && errno == EEXIST);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (fd_ >= 0 && !renamed_) ::unlink(name_.c_str());
-  }
-
-  int descriptor() const { return fd_; }
-  // Closed, and not removed.
-  std::string keep() {
-    ::close(std::exchange(fd_, -1));
-    return name_;
-  }
-  bool rename_to(const std::string& path) {
-    renamed_ = uninterrupted([&] { return ::rename(name_.c_str(), path.c_str()); }) == 0;
-    return renamed_;
-  }
-
- private:
-  std::string name_;
-  int fd_;
-  bool renamed_ = false;
-};
+// Makes what has a free name in the same directory, since rename() does not cross file systems. The name; empty,
+// with errno: it cannot be made. `make`: fails with EEXIST where the name is taken.
+template <class Make>
+std::string made_beside(const std::string& path, const Make& make) {
+  static std::atomic<unsigned> counter{0};
+  std::string name;
+  do {
+    name = fmt::format("{}{}{}-{}", path, part, ::getpid(), counter++);
+    if (uninterrupted([&] { return make(name.c_str()); }) >= 0) return name;
+  } while (errno == EEXIST);
+  return "";
+}
 
 // The rename must reach the disk as well. Some file systems cannot flush a directory; this is not an error, since
 // the file is whole either way.
@@ -96,23 +77,71 @@ void flush_directory_of(const std::string& path) {
   if (fd.open()) uninterrupted([&] { return ::fsync(fd.get()); });
 }
 
-// Closed, and on the disk.
-void fill_part(const TemporaryFile& temporary, const std::string& path, std::string_view content) {
-  Descriptor fd(temporary.descriptor());
-  if (!fd.open()) throw file_error(path, not_written, errno);
-  struct stat old {};
-  if (::lstat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(fd.get(), old.st_mode & 0777) != 0)
-    throw file_error(path, not_written, errno);
-  if (!write_all(fd.get(), content)) throw file_error(path, not_written, errno);
-  if (uninterrupted([&] { return ::fsync(fd.get()); }) != 0) throw file_error(path, not_written, errno);
-  if (fd.close() != 0 && errno != EINTR)
-    throw file_error(path, not_written, errno);  // where interrupted it is closed
+FileError error_of(const std::string& path, const char* what) {
+  const int code = errno;
+  return {file_error(path, what, code), code};
 }
 
 }  // namespace
 
 InputError file_error(const std::string& path, const char* what, int code) {
   return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
+}
+
+Draft::Draft(std::string path) : path_(std::move(path)) {
+  // O_EXCL: no other process has it.
+  name_ = made_beside(path_, [this](const char* name) {
+    file_ = Descriptor(::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    return file_.get();
+  });
+  if (name_.empty()) throw error_of(path_, not_written);
+}
+
+Draft::~Draft() {
+  if (!replaced_) ::unlink(name_.c_str());
+}
+
+void Draft::take_permissions() {
+  struct stat old {};
+  if (::lstat(path_.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(file_.get(), old.st_mode & 0777) != 0)
+    throw error_of(path_, not_written);
+}
+
+void Draft::write(std::string_view content) {
+  take_permissions();
+  if (!write_all(file_.get(), content)) throw error_of(path_, not_written);
+}
+
+void Draft::need_room() const {
+  // More than programs write at a time: where they found no room, this finds none.
+  const std::string some(1 << 17, ' ');
+  Descriptor file(uninterrupted([&] { return ::open(name_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC); }));
+  if (!file.open() || !write_all(file.get(), some) || uninterrupted([&] { return ::fsync(file.get()); }) != 0)
+    throw error_of(path_, not_written);
+}
+
+void Draft::sync() {
+  if (!file_.open()) return;
+  take_permissions();
+  if (uninterrupted([&] { return ::fsync(file_.get()); }) != 0) throw error_of(path_, not_written);
+  if (file_.close() != 0 && errno != EINTR) throw error_of(path_, not_written);  // where interrupted it is closed
+}
+
+void Draft::replace() {
+  sync();
+  rename_whole(name_, path_);
+  replaced_ = true;
+}
+
+std::string new_draft_folder(const std::string& path) {
+  std::string name = made_beside(path, [](const char* free) { return ::mkdir(free, 0777); });
+  if (name.empty()) throw error_of(path, "cannot be made");
+  return name;
+}
+
+void rename_whole(const std::string& draft, const std::string& path) {
+  if (uninterrupted([&] { return ::rename(draft.c_str(), path.c_str()); }) != 0) throw error_of(path, not_written);
+  flush_directory_of(path);
 }
 
 void refuse_strange(const std::string& path, bool directory) {
@@ -168,29 +197,28 @@ std::string read_file(const std::string& path) {
 }
 
 void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as) {
-  TemporaryFile temporary(path);
-  fill_part(temporary, path, content);
+  Draft draft(path);
+  draft.write(content);
+  draft.sync();
   if (!keep_old_as.empty() && uninterrupted([&] { return ::rename(path.c_str(), keep_old_as.c_str()); }) != 0 &&
       errno != ENOENT)
     throw file_error(keep_old_as, not_written, errno);
-  if (!temporary.rename_to(path)) throw file_error(path, not_written, errno);
-  flush_directory_of(path);
+  draft.replace();
 }
 
 void write_files_together(const std::vector<std::pair<std::string, std::string>>& files) {
-  std::list<TemporaryFile> parts;
-  for (const auto& [path, content] : files) fill_part(parts.emplace_back(path), path, content);
-  auto at = parts.begin();
+  std::list<Draft> drafts;
   for (const auto& [path, content] : files) {
-    if (!(at++)->rename_to(path)) throw file_error(path, not_written, errno);
-    flush_directory_of(path);
+    Draft& draft = drafts.emplace_back(path);
+    draft.write(content);
+    draft.sync();
   }
+  for (Draft& draft : drafts) draft.replace();
 }
 
 std::string new_part_of(const std::string& path) {
-  TemporaryFile temporary(path);
-  if (temporary.descriptor() < 0) throw file_error(path, not_written, errno);
-  return temporary.keep();
+  Draft draft(path);
+  return draft.keep();
 }
 
 std::string without_part(const std::string& name) {

@@ -7,6 +7,10 @@
 #include <iterator>
 #include <limits>
 
+#include "io/draft.hpp"
+#include "io/processes.hpp"
+#include "model/error.hpp"
+#include "report/drawing.hpp"
 #include "report/scatter.hpp"
 
 namespace ropewalk {
@@ -724,6 +728,23 @@ std::string mark_svg(Mark mark, int colour, bool hollow) {
 std::string chart_file(const ScatterChart& scatter) {
   const std::string svg = scatter_svg(scatter);
   return svg.empty() ? "" : svg_file(svg, scatter.chart.width, scatter.chart.height);
+}
+
+void write_drawing(const std::string& path, const std::string& svg, const std::string& format, double zoom,
+                   const char* option) {
+  Draft from(path), to(path);
+  from.write(svg);
+  switch (
+      run_program({"rsvg-convert", "-o", to.name(), "-f", format, "-z", fmt::format("{}", zoom), from.name()})) {
+    case ProgramEnd::missing:
+      throw InputError({path, 0, option}, "cannot be made: rsvg-convert is missing",
+                       "install librsvg2-bin, or write .svg");
+    case ProgramEnd::failed:
+      to.need_room();
+      throw InputError({path, 0, option}, "cannot be made: rsvg-convert failed", "write .svg");
+    case ProgramEnd::well:
+      to.replace();
+  }
 }
 
 }  // namespace ropewalk

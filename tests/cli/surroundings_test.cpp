@@ -183,6 +183,69 @@ TEST_F(Surroundings, AFolderBesideAMovieStays) {
     EXPECT_EQ(entry.path().filename().string().rfind("ropewalk-", 0), std::string::npos) << entry.path();
 }
 
+// Beside a result, and where drafts of earlier versions stood.
+TEST_F(Surroundings, ADraftTakesNoFileOfTheUser) {
+  ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  spit(dir / "fig.png.svg", "mine");
+  ASSERT_EQ(run("picture d -o fig.png").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(slurp(dir / "fig.png").substr(1, 3), "PNG");
+  EXPECT_EQ(slurp(dir / "fig.png.svg"), "mine");
+
+  fs::create_directories(dir / "d/errors");
+  spit(dir / "d/errors/EA-plus.toml", "mine");
+  ASSERT_EQ(run("errors d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(slurp(dir / "d/errors/EA-plus.toml"), "mine");
+
+  sweep_file("[branch]\nat_ps = 0.2\n[branch.vary]\nrun.duration_ps = [0.4]\n");
+  const std::string point = script("ropewalk sweep w.toml --quiet > /dev/null && ls w/points").out;
+  ASSERT_NE(point, "") << slurp(dir / "stderr.txt");
+  const std::string made = (dir / "w/points" / point.substr(0, point.find('\n'))).string(), mine = made + ".part",
+                    left = made + ".part-12-3";
+  fs::copy(dir / "d", mine, fs::copy_options::recursive);
+  fs::rename(made, left);  // as a killed process leaves it
+  const auto before = content(mine);
+  ASSERT_EQ(run("sweep w.toml --quiet").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_TRUE(fs::exists(made + "/final.csv"));
+  EXPECT_TRUE(content(mine) == before);
+  EXPECT_FALSE(fs::exists(left));
+}
+
+// The limit on the size of files stands for a full disk.
+TEST_F(Surroundings, ThatThereIsNoRoomIsSaidAndNothingStays) {
+  ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("picture d -o d/whole.svg").code, 0) << slurp(dir / "stderr.txt");
+  const auto room_for_svg = static_cast<int>(fs::file_size(dir / "d/whole.svg") / 1024 + 1);  // KiB
+  fs::create_directories(dir / "bin");
+  spit(dir / "bin/ffmpeg",
+       "#!/bin/sh\nfor last; do :; done\n[ \"$last\" = - ] || head -c 1000000 /dev/zero > \"$last\"\n");
+  fs::permissions(dir / "bin/ffmpeg", fs::perms::owner_all);
+  const auto names = [&] {
+    std::set<std::string> all;
+    for (const auto& entry : fs::directory_iterator(dir)) all.insert(entry.path().filename().string());
+    return all;
+  };
+  script("");
+  const std::set<std::string> before = names();
+  struct Case {
+    int room;  // KiB
+    const char *verb, *words;
+  };
+  for (const Case& c : {Case{1, "picture d -o f.png", "f.png: cannot be written: "},
+                        Case{room_for_svg, "picture d -o f.png --zoom 8", "f.png: cannot be written: "},
+                        Case{1, "view d --movie m.webm --frames 2", "m.webm: pictures cannot be written: "},
+                        Case{500, "view d --movie m.webm --frames 2", "m.webm: cannot be written: "},
+                        Case{1, "convert d c.pvd", ".vtp: cannot be written: "}}) {
+    const Outcome o = script(fmt::format("PATH=$PWD/bin:$PATH\nulimit -f {}\nropewalk {}", c.room, c.verb));
+    EXPECT_EQ(o.code, 2) << c.verb << o.err;
+    EXPECT_THAT(o.err, HasSubstr(c.words + std::string("File too large; "))) << c.verb;
+    EXPECT_EQ(names(), before) << c.verb;
+  }
+  // Another reason is not taken for a lack of room.
+  const Outcome o = run("picture d -o f.png", "PATH=" + (dir / "nowhere").string());
+  EXPECT_THAT(o.err, HasSubstr("f.png: -o: cannot be made: rsvg-convert is missing; ")) << o.err;
+  EXPECT_EQ(names(), before);
+}
+
 // --force removes the files of a run by their names, also those in `errors`, and nothing if there is one more.
 TEST_F(Surroundings, ForceRemovesWhatItKnowsByName) {
   ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");

@@ -282,8 +282,8 @@ TEST_F(View, AMovieIsMadeOfPicturesOfOneSize) {
   run_rope();
   fs::create_directory(dir / "bin");
   spit(dir / "bin/ffmpeg",
-       "#!/bin/sh\nfor last; do :; done\n[ \"$last\" = - ] && exit 0\n"
-       "cp -r \"$(dirname \"$last\")\" kept && echo \"$@\" > \"$last\"\n");
+       "#!/bin/sh\nfor last; do [ \"$word\" = -i ] && from=$last; word=$last; done\n[ \"$last\" = - ] && exit 0\n"
+       "cp -r \"$(dirname \"$from\")\" kept && echo \"$@\" > \"$last\"\n");
   fs::permissions(dir / "bin/ffmpeg", fs::perms::owner_all);
   const Outcome o = run("view d --movie m.webm --frames 3 --fps 7.5 --width 801", "PATH=$PWD/bin:$PATH");
   ASSERT_EQ(o.code, 0) << o.err;

@@ -135,8 +135,7 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
 // Runs the model and adds cost and values. Throws NumericalError.
 void measure(const Specimen& specimen, const ChartModel& model, ChartPoint& point);
 // Instructions per element and step by callgrind, in the first steps of the protocol; none without valgrind.
-std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
-                                         const std::string& folder);
+std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model);
 // Mark the steps to count in step_for_counting; without callgrind they do nothing.
 void count_from_here();
 void count_to_here();

@@ -13,6 +13,7 @@
 #include "atomistic/child_process.hpp"
 #include "chart/chart.hpp"
 #include "io/files.hpp"
+#include "io/removal.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -33,11 +34,11 @@ std::optional<double> collected(const std::string& path) {
   return {};
 }
 
-std::optional<double> counted(const std::string& scene, const std::string& model, long steps,
-                              const std::string& folder) {
+std::optional<double> counted(const std::string& scene, const std::string& model, long steps) {
+  const TemporaryFolder folder;
   calibrate::ChildOptions options;
-  options.folder = folder;
-  options.output = (fs::absolute(folder) / "callgrind.txt").string();
+  options.folder = folder.path();
+  options.output = folder.file("callgrind.txt");
   options.quiet_seconds = options.max_seconds = 600;
   const std::vector<std::string> arguments = {"valgrind",
                                               "--tool=callgrind",
@@ -49,10 +50,7 @@ std::optional<double> counted(const std::string& scene, const std::string& model
                                               model,
                                               std::to_string(steps)};
   const calibrate::ChildEnd end = calibrate::run_child(arguments, options);
-  const std::optional<double> count =
-      end.kind == calibrate::ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
-  fs::remove(options.output);
-  return count;
+  return end.kind == calibrate::ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
 }
 
 }  // namespace
@@ -63,12 +61,11 @@ void count_from_here() {
 }
 void count_to_here() { CALLGRIND_STOP_INSTRUMENTATION; }
 
-std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model,
-                                         const std::string& folder) {
+std::optional<double> count_instructions(const ChartScene& scene, const ChartModel& model) {
   const double elements = scene.build(model).topology.elements();
   const long steps =
       std::max(min_steps, whole_steps * static_cast<long>(wanted_element_steps / elements / whole_steps));
-  const std::optional<double> count = counted(scene.name, model.name, steps, folder);
+  const std::optional<double> count = counted(scene.name, model.name, steps);
   if (!count) return {};
   return *count / (static_cast<double>(steps) * elements);
 }

@@ -82,7 +82,7 @@ std::vector<Task> tasks_of(const ChartArguments& a) {
 void run_task(Task& t, const ChartArguments& a) {
   try {
     if (!t.kept) measure(t.specimen, t.model, t.point);
-    if (a.instructions) t.point.instructions = count_instructions(*t.scene, t.model, a.out);
+    if (a.instructions) t.point.instructions = count_instructions(*t.scene, t.model);
   } catch (const NumericalError& e) {
     t.point.error = e.what();
   }

@@ -17,6 +17,7 @@
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/failure.hpp"
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -62,18 +63,15 @@ int calibrate(const Place& place) {
   c.out = place.file(".toml");
   c.command =
       fmt::format("ropewalk calibrate --chirality {} --potential {} --envelope", place.tube, place.potential);
-  const std::string numbers = place.file("-calibration.json");
-  std::string part;
   try {
-    part = new_part_of(numbers);
-    if (!std::freopen(part.c_str(), "w", stdout))
-      throw std::runtime_error(fmt::format("{}: {}", part, std::strerror(errno)));
+    Draft numbers(place.file("-calibration.json"));
+    if (!std::freopen(numbers.name().c_str(), "w", stdout))
+      throw std::runtime_error(fmt::format("{}: {}", numbers.name(), std::strerror(errno)));
     const int code = calibrate::calibrate_command(c);
     if (std::fflush(stdout) != 0) throw std::runtime_error(std::strerror(errno));
-    fs::rename(part, numbers);
+    numbers.replace();
     return code;
   } catch (const std::exception& e) {
-    if (!part.empty()) fs::remove(part);
     write_file_atomically(place.file("-error.txt"), failure_words(e) + "\n");
     return 3;
   }

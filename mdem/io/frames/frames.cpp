@@ -2,10 +2,9 @@
 
 #include <unistd.h>
 
-#include <cerrno>
 #include <filesystem>
 
-#include "io/descriptor.hpp"
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/frames/dump.hpp"
 #include "io/frames/gsd.hpp"
@@ -68,8 +67,7 @@ NewFrames::Part::~Part() {
 
 void NewFrames::replace() {
   writer_->sync();
-  if (uninterrupted([&] { return ::rename(part_.name.c_str(), path_.c_str()); }) != 0)
-    throw file_error(path_, "cannot be written", errno);
+  rename_whole(part_.name, path_);
   part_.renamed = true;
   writer_.reset();
 }

@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <limits>
 
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "io/removal.hpp"
 #include "model/error.hpp"
+#include "report/drawing.hpp"
 #include "report/movie_picture.hpp"
 #include "report/page.hpp"
 #include "run/pages/run_views.hpp"
@@ -28,26 +30,33 @@ void need_ffmpeg() {
     throw InputError({"", 0, "--movie"}, "needs ffmpeg, which is missing or does not work", "install ffmpeg");
 }
 
-void draw(const std::vector<RopeView>& views, const MovieStage& stage, const std::string& folder) {
-  bool all = true;
+constexpr int by_program = 255;  // above all numbers of errors
+
+void draw(const std::vector<RopeView>& views, const MovieStage& stage, const std::string& folder,
+          const std::string& movie) {
+  int failed = 0;  // of the first picture that cannot be made: errno, or `by_program`
   std::vector<ProcessTask> tasks;
   for (std::size_t k = 0; k < views.size(); ++k)
-    tasks.push_back(
-        {[&, k] {
-           try {
-             const std::string name = fmt::format("{}/{:06}", folder, k);
-             write_file_atomically(name + ".svg",
-                                   movie_picture(views[k], stage, number_text(views[k].time_ps) + " ps"));
-             return run_program({"rsvg-convert", "-o", name + ".png", name + ".svg"}) == ProgramEnd::well ? 0 : 1;
-           } catch (const std::exception&) {
-             return 1;
-           }
-         },
-         [&all](int status) { all = all && WIFEXITED(status) && WEXITSTATUS(status) == 0; }});
+    tasks.push_back({[&, k] {
+                       try {
+                         write_drawing(fmt::format("{}/{:06}.png", folder, k),
+                                       movie_picture(views[k], stage, number_text(views[k].time_ps) + " ps"), "png",
+                                       1, "--movie");
+                         return 0;
+                       } catch (const FileError& e) {
+                         return e.code();
+                       } catch (const std::exception&) {
+                         return by_program;
+                       }
+                     },
+                     [&failed](int status) {
+                       if (failed == 0) failed = WIFEXITED(status) ? WEXITSTATUS(status) : by_program;
+                     }});
   run_processes(tasks, omp_get_num_procs());
-  if (!all)
-    throw InputError({folder, 0, "--movie"}, "pictures cannot be made: rsvg-convert is missing or failed",
-                     "install librsvg2-bin, and look for room on the disk");
+  if (failed == by_program)
+    throw InputError({movie, 0, "--movie"}, "pictures cannot be made: rsvg-convert is missing or failed",
+                     "install librsvg2-bin");
+  if (failed != 0) throw file_error(movie, "pictures cannot be written", failed);
 }
 
 }  // namespace
@@ -67,10 +76,10 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
     views.push_back(view_of(events, f, std::numeric_limits<double>::quiet_NaN()));
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
-  // Beside the movie, which is renamed out of it.
+  // Beside the movie, where there should be room.
   const fs::path place = fs::path(a.file).parent_path();
   const TemporaryFolder folder(place.empty() ? "." : place.string());
-  draw(views, movie_stage(views, camera, radius, a.width), folder.path());
+  draw(views, movie_stage(views, camera, radius, a.width), folder.path(), a.file);
   std::vector<std::string> words = {"ffmpeg",
                                     "-nostdin",
                                     "-v",
@@ -87,14 +96,13 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
                                  mp4 = {"-c:v", "libx264", "-crf", "18", "-movflags", "+faststart"};
   const auto& codec = format == ".webm" ? webm : mp4;
   words.insert(words.end(), codec.begin(), codec.end());
-  const std::string draft = folder.file("movie" + format);
-  words.push_back(draft);
-  std::error_code error;
-  const bool made = run_program(words) == ProgramEnd::well;
-  if (made) fs::rename(draft, a.file, error);
-  if (!made || error)
-    throw InputError({a.file, 0, "--movie"}, "cannot be made: ffmpeg failed",
-                     "take the other of .webm and .mp4, and look for room on the disk");
+  Draft movie(a.file);
+  words.insert(words.end(), {"-f", format.substr(1), movie.name()});
+  if (run_program(words) != ProgramEnd::well) {
+    movie.need_room();
+    throw InputError({a.file, 0, "--movie"}, "cannot be made: ffmpeg failed", "take the other of .webm and .mp4");
+  }
+  movie.replace();
   return {views.size(), stored};
 }
 
