@@ -10,22 +10,29 @@ namespace UNIT {
 
 constexpr double force_tolerance = 1e-12, motion_tolerance = 1e-11;
 
-class FiveStatesTest : public Lammps, public ::testing::WithParamInterface<FiveStates> {
+// One start of LAMMPS for each number of ranks has all five states.
+class FiveStatesTest : public Lammps {
  protected:
-  void SetUp() override {
-    Lammps::SetUp();
-    // The name of a parametrised test has a slash.
-    dir = fs::temp_directory_path() /
-          ("ropewalk-five-" + std::string(GetParam().name) + "-" + std::to_string(getpid()));
-    fs::create_directories(dir);
-    spit(dir / "tubes.csv", state_text(GetParam().tubes, 0.01, 7));
-    exported(driven_scene(GetParam()), "out");
-    scene = read_scene((dir / "scene.toml").string());
-    prepared = prepare(scene);
-  }
+  struct Case {
+    std::string name;
+    Scene scene;
+    Prepared prepared;
+  };
 
-  Scene scene;
-  Prepared prepared;
+  Case case_of(const FiveStates& state, const std::string& scene_text) const {
+    spit(dir / "tubes.csv", state_text(state.tubes, 0.01, 7));
+    spit(dir / "scene.toml", scene_text);
+    Scene scene = read_scene((dir / "scene.toml").string());
+    Prepared prepared = prepare(scene);
+    return {state.name, std::move(scene), std::move(prepared)};
+  }
+  // The same, exported to a folder of its name.
+  Case exported_case(const FiveStates& state, const std::string& scene_text) const {
+    Case c = case_of(state, scene_text);
+    exported(scene_text, c.name);
+    return c;
+  }
+  std::string output(const std::string& folder) const { return slurp(dir / folder / "log.lammps"); }
 };
 
 // Loads included, as LAMMPS has them in its total.
@@ -90,9 +97,7 @@ std::array<double, 6> printed_virial(const std::string& out) {
   return w;
 }
 
-TEST_P(FiveStatesTest, ForcesEnergiesAndVirialAgree) {
-  // Step 0 carries the forces of the export along; at step 1 LAMMPS has to find them itself.
-  edit("out", "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
+TEST_F(FiveStatesTest, ForcesEnergiesAndVirialAgree) {
   std::string print = "compute w all pressure NULL pair bond\nthermo_style custom step pe vol c_w[1]\n",
               row = "virial";
   for (int k = 1; k <= 6; ++k) {
@@ -100,90 +105,126 @@ TEST_P(FiveStatesTest, ForcesEnergiesAndVirialAgree) {
     print += "variable w" + n + "_now equal c_w[" + n + "]*vol\nvariable w" + n + " format w" + n + "_now %.17g\n";
     row += " ${w" + n + "}";
   }
-  edit("out", "run ${last} upto\n", print + "run 0\nprint \"" + row + "\"\n");
-  prepared.state = start(scene, prepared).state();  // with the velocities that the constraints allow
-  const std::array<double, 6> virial = reference_virial(prepared);
-  const double scale = std::fabs(virial[0]) + std::fabs(virial[1]) + std::fabs(virial[2]);
-  struct Way {
-    int ranks;
-    const char* forces;
+  const auto folder = [](const std::string& name, int ranks, const std::string& forces) {
+    return name + "-" + forces + "-" + std::to_string(ranks);
   };
-  for (const Way& way : {Way{1, "engine"}, {2, "engine"}, {4, "engine"}, {1, "plain"}, {4, "plain"}}) {
-    SCOPED_TRACE(std::string(way.forces) + " on " + std::to_string(way.ranks));
-    const bool plain = way.forces == std::string("plain");
-    const Forces expected = forces_here(prepared, prepared.time_step, plain);
-    ASSERT_GT(std::fabs(expected.energy.vdw), 1);  // there is contact to speak of
-    fs::remove(dir / "out/lammps-rows.csv");
-    const Outcome o = lmp(way.ranks, "out", std::string("-in in.rope -var steps 0 -var forces ") + way.forces);
+  std::vector<Case> cases;
+  for (const FiveStates& state : five_states()) {
+    cases.push_back(exported_case(state, driven_scene(state)));
+    // Step 0 carries the forces of the export along; at step 1 LAMMPS has to find them itself.
+    edit(state.name, "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
+    edit(state.name, "run ${last} upto\n", print + "run 0\nprint \"" + row + "\"\n");
+  }
+  for (const int ranks : {1, 2, 4}) {
+    std::vector<Part> parts;
+    for (const Case& c : cases)
+      for (const char* forces : {"engine", "plain"})
+        parts.push_back(
+            {copied(c.name, folder(c.name, ranks, forces)), {"steps 0", std::string("forces ") + forces}});
+    const Outcome o = lmp_each(ranks, parts);
     ASSERT_EQ(o.code, 0) << o.out << o.err;
-    EXPECT_NE(o.out.find(plain ? "Forces by the plain forms" : "Forces by the engine"), std::string::npos) << o.out;
-    const Left left = left_by(dir / "out", prepared.topology);
-    EXPECT_LT(relative_difference(expected.force, left.force), force_tolerance);
-    EXPECT_LT(relative_difference(expected.torque, left.torque), force_tolerance);
-    const LammpsRow row_found = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
-    const Energies& e = expected.energy;
-    const double largest = sum_of_magnitudes(e) * force_tolerance;
-    EXPECT_NEAR(row_found.stretch, e.stretch, largest);
-    EXPECT_NEAR(row_found.shear, e.shear, largest);
-    EXPECT_NEAR(row_found.bend, e.bend, largest);
-    EXPECT_NEAR(row_found.twist, e.twist, largest);
-    EXPECT_NEAR(row_found.vdw, e.vdw, largest);
-    EXPECT_NEAR(row_found.kinetic, kinetic_energy(prepared.topology, prepared.state), 1e-12 * row_found.kinetic);
-    const std::array<double, 6> found = printed_virial(o.out);
-    // The engine's tables are off by 1e-11 of the steepest force.
-    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(found[k], virial[k], (plain ? 1e-12 : 1e-10) * scale) << k;
+  }
+  for (Case& c : cases) {
+    Prepared& prepared = c.prepared;
+    prepared.state = start(c.scene, prepared).state();  // with the velocities that the constraints allow
+    const std::array<double, 6> virial = reference_virial(prepared);
+    const double scale = std::fabs(virial[0]) + std::fabs(virial[1]) + std::fabs(virial[2]);
+    for (const std::string forces : {"engine", "plain"}) {
+      const bool plain = forces == "plain";
+      const Forces expected = forces_here(prepared, prepared.time_step, plain);
+      const Energies& e = expected.energy;
+      ASSERT_GT(std::fabs(e.vdw), 1);  // there is contact to speak of
+      for (const int ranks : {1, 2, 4}) {
+        const std::string out = folder(c.name, ranks, forces), printed = output(out);
+        SCOPED_TRACE(out);
+        EXPECT_NE(printed.find(plain ? "Forces by the plain forms" : "Forces by the engine"), std::string::npos)
+            << printed;
+        const Left left = left_by(dir / out, prepared.topology);
+        EXPECT_LT(relative_difference(expected.force, left.force), force_tolerance);
+        EXPECT_LT(relative_difference(expected.torque, left.torque), force_tolerance);
+        const LammpsRow row_found = read_lammps_rows(LammpsDirectory{(dir / out).string()}).back();
+        const double largest = sum_of_magnitudes(e) * force_tolerance;
+        EXPECT_NEAR(row_found.stretch, e.stretch, largest);
+        EXPECT_NEAR(row_found.shear, e.shear, largest);
+        EXPECT_NEAR(row_found.bend, e.bend, largest);
+        EXPECT_NEAR(row_found.twist, e.twist, largest);
+        EXPECT_NEAR(row_found.vdw, e.vdw, largest);
+        EXPECT_NEAR(row_found.kinetic, kinetic_energy(prepared.topology, prepared.state),
+                    1e-12 * row_found.kinetic);
+        const std::array<double, 6> found = printed_virial(printed);
+        // The engine's tables are off by 1e-11 of the steepest force.
+        for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(found[k], virial[k], (plain ? 1e-12 : 1e-10) * scale) << k;
+      }
+    }
   }
 }
 
 // Single precision in the pairs rounds at 1e-7 of the forces of a pair.
-TEST_P(FiveStatesTest, MixedPrecisionIsThatOfTheSimulator) {
-  std::string text = driven_scene(GetParam());
-  const std::string precision = "precision = \"double\"";
-  text.replace(text.find(precision), precision.size(), "precision = \"mixed\"");
-  exported(text, "mixed");
-  edit("mixed", "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
-  edit("mixed", "run ${last} upto\n", "run 0\n");
-  Scene mixed = read_scene((dir / "scene.toml").string());
-  Prepared here = prepare(mixed);
-  here.state = start(mixed, here).state();
-  const Forces expected = forces_here(here, here.time_step, false);
-  const Outcome o = lmp(2, "mixed", "-in in.rope -var steps 0");
+TEST_F(FiveStatesTest, MixedPrecisionIsThatOfTheSimulator) {
+  std::vector<Case> cases;
+  std::vector<Part> parts;
+  for (const FiveStates& state : five_states()) {
+    std::string text = driven_scene(state);
+    const std::string precision = "precision = \"double\"";
+    text.replace(text.find(precision), precision.size(), "precision = \"mixed\"");
+    cases.push_back(exported_case(state, text));
+    edit(state.name, "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
+    edit(state.name, "run ${last} upto\n", "run 0\n");
+    parts.push_back({state.name, {"steps 0"}});
+  }
+  const Outcome o = lmp_each(2, parts);
   ASSERT_EQ(o.code, 0) << o.out << o.err;
-  EXPECT_NE(o.out.find("in mixed precision"), std::string::npos) << o.out;
-  const Left left = left_by(dir / "mixed", here.topology);
-  EXPECT_LT(relative_difference(expected.force, left.force), 1e-6);
-  // Both are as far from double precision, up to 6e-6.
-  EXPECT_LT(relative_difference(expected.torque, left.torque), 5e-6);
-  prepared.state = here.state;
-  const Forces full = forces_here(prepared, here.time_step, false);
-  EXPECT_GT(relative_difference(full.force, left.force), 1e-10);  // it is not the double one
-}
-
-TEST_P(FiveStatesTest, TwoHundredStepsAgree) {
-  constexpr int steps = 200;
-  Simulation native = start(scene, prepared);
-  for (int k = 0; k < steps; ++k) native.step();
-  ASSERT_GT(relative_difference(native.state().position, prepared.state.position), 1e-4);  // it has moved
-  for (const int ranks : {1, 2, 4}) {
-    SCOPED_TRACE(ranks);
-    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps " + std::to_string(steps));
-    ASSERT_EQ(o.code, 0) << o.out << o.err;
-    const Left left = left_by(dir / "out", prepared.topology);
-    ASSERT_EQ(left.state.step, steps);
-    EXPECT_LT(relative_difference(native.state().position, left.state.position), motion_tolerance);
-    EXPECT_LT(difference_of_turns(native.state().orientation, left.state.orientation), motion_tolerance);
-    EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), motion_tolerance);
-    EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity), motion_tolerance);
-    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
-    const double scale = sum_of_magnitudes(native.forces().energy) + std::fabs(native.work());
-    EXPECT_NEAR(row.work, native.work(), motion_tolerance * scale);
-    EXPECT_NEAR(row.dissipated, native.dissipated(), motion_tolerance * scale);
-    EXPECT_NEAR(row.time, native.state().time, 1e-12 * row.time);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const std::string& name = cases[k].name;
+    SCOPED_TRACE(name);
+    Prepared& here = cases[k].prepared;
+    here.state = start(cases[k].scene, here).state();
+    const Forces expected = forces_here(here, here.time_step, false);
+    EXPECT_NE(output(name).find("in mixed precision"), std::string::npos) << output(name);
+    const Left left = left_by(dir / name, here.topology);
+    EXPECT_LT(relative_difference(expected.force, left.force), 1e-6);
+    // Both are as far from double precision, up to 6e-6.
+    EXPECT_LT(relative_difference(expected.torque, left.torque), 5e-6);
+    Prepared in_double = case_of(five_states()[k], driven_scene(five_states()[k])).prepared;
+    in_double.state = here.state;
+    const Forces full = forces_here(in_double, here.time_step, false);
+    EXPECT_GT(relative_difference(full.force, left.force), 1e-10);  // it is not the double one
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FiveStatesTest, ::testing::ValuesIn(five_states()),
-                         [](const auto& info) { return std::string(info.param.name); });
+TEST_F(FiveStatesTest, TwoHundredStepsAgree) {
+  constexpr int steps = 200;
+  std::vector<Case> cases;
+  for (const FiveStates& state : five_states()) cases.push_back(exported_case(state, driven_scene(state)));
+  for (const int ranks : {1, 2, 4}) {
+    std::vector<Part> parts;
+    for (const Case& c : cases)
+      parts.push_back({copied(c.name, c.name + "-" + std::to_string(ranks)), {"steps " + std::to_string(steps)}});
+    const Outcome o = lmp_each(ranks, parts);
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+  }
+  for (const Case& c : cases) {
+    Simulation native = start(c.scene, c.prepared);
+    for (int k = 0; k < steps; ++k) native.step();
+    ASSERT_GT(relative_difference(native.state().position, c.prepared.state.position), 1e-4);  // it has moved
+    for (const int ranks : {1, 2, 4}) {
+      const fs::path out = dir / (c.name + "-" + std::to_string(ranks));
+      SCOPED_TRACE(out);
+      const Left left = left_by(out, c.prepared.topology);
+      ASSERT_EQ(left.state.step, steps);
+      EXPECT_LT(relative_difference(native.state().position, left.state.position), motion_tolerance);
+      EXPECT_LT(difference_of_turns(native.state().orientation, left.state.orientation), motion_tolerance);
+      EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), motion_tolerance);
+      EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity),
+                motion_tolerance);
+      const LammpsRow row = read_lammps_rows(LammpsDirectory{out.string()}).back();
+      const double scale = sum_of_magnitudes(native.forces().energy) + std::fabs(native.work());
+      EXPECT_NEAR(row.work, native.work(), motion_tolerance * scale);
+      EXPECT_NEAR(row.dissipated, native.dissipated(), motion_tolerance * scale);
+      EXPECT_NEAR(row.time, native.state().time, 1e-12 * row.time);
+    }
+  }
+}
 
 }  // namespace UNIT
 }  // namespace

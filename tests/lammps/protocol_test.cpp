@@ -1,6 +1,6 @@
 // Grips, dampings and relaxation in LAMMPS against the simulator; restart files; plugin; `clear`.
 #include <functional>
-#include <initializer_list>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "io/log.hpp"
@@ -26,83 +26,91 @@ struct Protocol {
   double tolerance = 1e-11;
 };
 
-std::ostream& operator<<(std::ostream& out, const Protocol& p) { return out << p.name; }
+const std::vector<Protocol>& protocols() {
+  static const std::vector<Protocol> all = {
+      {"PerTube", "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n"},
+      {"Total", "[twist]\nmoment_nN_nm = 60\nrate_nN_nm_per_ps = 100\nreading = \"total\"\n"},
+      {"Tangential", "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
+      {"Follower",
+       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"follower\"\n"
+       "[start]\ntemperature_K = 100\nmay_cool = true\n"},
+      {"Conservative",
+       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"conservative\"\n"
+       "[start]\ntemperature_K = 100\nmay_cool = true\n"},
+      {"Held",
+       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
+       "[start]\ntemperature_K = 100\nmay_cool = true\n"},
+      // It acts by the sign of a velocity, which rounding turns where the velocity is nothing.
+      {"LocalDamping",
+       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
+       "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
+       1e-6},
+      // A disc that turns and pulls, and clamps for each tube in which they spin and tilt. LAMMPS solves for the
+      // impulses of a clamp in another order.
+      {"Grips",
+       "[[grip]]\nend = \"lower\"\nspin_free = true\ntilt_free = true\nas = \"each\"\n"
+       "[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\nabout_x = \"free\"\n"
+       "about_z = { rotation_deg = [[0, 0], [1, 3], [2, 0]] }\nsmooth_ps = 0.5\n",
+       1e-9},
+      // Clamps that reach half of a tube, so that some have elements on two ranks.
+      {"DeepGrips",
+       "[[grip]]\nend = \"lower\"\nelements = 6\nas = \"each\"\nslide_free = true\nabout_x = \"free\"\n"
+       "[[grip]]\nend = \"upper\"\nelements = 5\nz = { force_nN = 5 }\nabout_z = { torque_nN_nm = 30 }\n",
+       1e-9},
+      {"LegacyTorque",
+       "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
+      {"NoContact",
+       "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
+       "[[load]]\nkind = \"fix\"\nelements = [0]\n"}};
+  return all;
+}
 
-class ProtocolTest : public Lammps, public ::testing::WithParamInterface<Protocol> {};
+class ProtocolTest : public Lammps {};
 
-TEST_P(ProtocolTest, HundredStepsAgree) {
+TEST_F(ProtocolTest, HundredStepsAgree) {
   constexpr int steps = 100;
-  exported(rope(GetParam().tables), "out");
-  Scene scene = read_scene((dir / "scene.toml").string());
-  Simulation native = start(scene, prepare(scene));
-  for (int k = 0; k < steps; ++k) native.step();
+  const std::vector<std::string> variables = {"steps " + std::to_string(steps)};
   const std::string across = "processors 1 1 *", along = "processors * 1 1";
-  for (const auto& [ranks, cut] : {std::pair{1, across}, {3, across}, {3, along}}) {
-    SCOPED_TRACE(std::to_string(ranks) + ", " + cut);
-    if (cut == along) edit("out", across, along);  // so that all of them have a part of each grip
-    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps " + std::to_string(steps));
+  std::vector<Part> one, three;
+  for (const Protocol& p : protocols()) {
+    const std::string name = p.name;
+    exported(rope(p.tables), name + "-1");
+    one.push_back({name + "-1", variables});
+    three.push_back({copied(name + "-1", name + "-3"), variables});
+    three.push_back({copied(name + "-1", name + "-3-along"), variables});
+    edit(name + "-3-along", across, along);  // so that all of them have a part of each grip
+  }
+  for (const auto& [ranks, parts] : {std::pair{1, one}, {3, three}}) {
+    const Outcome o = lmp_each(ranks, parts);
     ASSERT_EQ(o.code, 0) << o.out << o.err;
-    const Left left = left_by(dir / "out", native.topology());
-    EXPECT_LT(relative_difference(native.state().position, left.state.position), 1e-11);
-    EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), GetParam().tolerance);
-    EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity),
-              GetParam().tolerance);
-    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
-    EXPECT_NEAR(row.work, native.work(), GetParam().tolerance * std::fmax(1, native.work()));
-    EXPECT_NEAR(row.dissipated, native.dissipated(), GetParam().tolerance * std::fmax(1, native.dissipated()));
-    if (!GetParam().tables.empty()) {
+  }
+  for (const Protocol& p : protocols()) {
+    spit(dir / "scene.toml", rope(p.tables));
+    Scene scene = read_scene((dir / "scene.toml").string());
+    Simulation native = start(scene, prepare(scene));
+    for (int k = 0; k < steps; ++k) native.step();
+    for (const char* way : {"-1", "-3", "-3-along"}) {
+      SCOPED_TRACE(p.name + std::string(way));
+      const std::string out = (dir / (p.name + std::string(way))).string();
+      const Left left = left_by(out, native.topology());
+      ASSERT_EQ(left.state.step, steps);
+      EXPECT_LT(relative_difference(native.state().position, left.state.position), 1e-11);
+      EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), p.tolerance);
+      EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity), p.tolerance);
+      const LammpsRow row = read_lammps_rows(LammpsDirectory{out}).back();
+      EXPECT_NEAR(row.work, native.work(), p.tolerance * std::fmax(1, native.work()));
+      EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, ProtocolTest,
-    ::testing::Values(
-        Protocol{"PerTube", "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n"},
-        Protocol{"Total", "[twist]\nmoment_nN_nm = 60\nrate_nN_nm_per_ps = 100\nreading = \"total\"\n"},
-        Protocol{"Tangential",
-                 "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 30\napplication = \"tangential\"\n"},
-        Protocol{"Follower",
-                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"follower\"\n"
-                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
-        Protocol{"Conservative",
-                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\napplication = \"conservative\"\n"
-                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
-        Protocol{"Held",
-                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\nlateral = \"held\"\naxial = \"held\"\n"
-                 "[start]\ntemperature_K = 100\nmay_cool = true\n"},
-        // It acts by the sign of a velocity, which rounding turns where the velocity is nothing.
-        Protocol{"LocalDamping",
-                 "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[damping]\npfc_local = 0.3\n"
-                 "contact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n",
-                 1e-6},
-        // A disc that turns and pulls, and clamps for each tube in which they spin and tilt. LAMMPS solves for the
-        // impulses of a clamp in another order.
-        Protocol{"Grips",
-                 "[[grip]]\nend = \"lower\"\nspin_free = true\ntilt_free = true\nas = \"each\"\n"
-                 "[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\nabout_x = \"free\"\n"
-                 "about_z = { rotation_deg = [[0, 0], [1, 3], [2, 0]] }\nsmooth_ps = 0.5\n",
-                 1e-9},
-        // Clamps that reach half of a tube, so that some have elements on two ranks.
-        Protocol{"DeepGrips",
-                 "[[grip]]\nend = \"lower\"\nelements = 6\nas = \"each\"\nslide_free = true\nabout_x = \"free\"\n"
-                 "[[grip]]\nend = \"upper\"\nelements = 5\nz = { force_nN = 5 }\nabout_z = { torque_nN_nm = 30 }\n",
-                 1e-9},
-        Protocol{
-            "LegacyTorque",
-            "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
-        Protocol{"NoContact",
-                 "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
-                 "[[load]]\nkind = \"fix\"\nelements = [0]\n"}),
-    [](const auto& info) { return std::string(info.param.name); });
-
 class LammpsRun : public Lammps {
  protected:
-  // Makes `steps` steps in LAMMPS and here. Returns the largest relative difference of positions, velocities and
-  // spins.
-  void expect_equal_steps(const std::string& scene_text, int steps, std::initializer_list<int> ranks,
-                          double tolerance, const std::function<void()>& edit_script = {}) const {
+  // Makes `steps` steps in LAMMPS, in the folder out-RANKS for each number of ranks, and here. `half`: a run of
+  // half of the steps, that is to go on, is in half-RANKS.
+  void expect_equal_steps(const std::string& scene_text, int steps, double tolerance,
+                          const std::function<void()>& edit_script = {}, bool half = false) const {
     exported(scene_text, "out");
     if (edit_script) edit_script();
     Scene scene = read_scene((dir / "scene.toml").string());
@@ -110,15 +118,19 @@ class LammpsRun : public Lammps {
     const State before = native.state();
     native.steps(steps);
     ASSERT_GT(relative_difference(native.state().position, before.position), 1e-5);  // it has moved
-    for (const int n : ranks) {
+    for (const int n : {1, 2, 4}) {
       SCOPED_TRACE(n);
-      const Outcome o = lmp(n, "out", "-in in.rope -var steps " + std::to_string(steps));
+      const std::string of_ranks = "-" + std::to_string(n);
+      std::vector<Part> parts = {{copied("out", "out" + of_ranks), {"steps " + std::to_string(steps)}}};
+      if (half) parts.push_back({copied("out", "half" + of_ranks), {"steps " + std::to_string(steps / 2)}});
+      const Outcome o = lmp_each(n, parts);
       ASSERT_EQ(o.code, 0) << o.out << o.err;
-      const Left left = left_by(dir / "out", native.topology());
+      const std::string out = (dir / parts.front().folder).string();
+      const Left left = left_by(out, native.topology());
       EXPECT_LT(relative_difference(native.state().position, left.state.position), tolerance);
       EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), tolerance);
       EXPECT_LT(relative_difference(native.state().angular_velocity, left.state.angular_velocity), tolerance);
-      const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}).back();
+      const LammpsRow row = read_lammps_rows(LammpsDirectory{out}).back();
       const Energies& e = native.forces().energy;
       const double scale = std::fabs(e.vdw) + e.bonds();
       EXPECT_NEAR(row.stretch + row.shear + row.bend + row.twist, e.bonds(), tolerance * scale);
@@ -140,7 +152,7 @@ const char* const hot_twist =
 
 // Lists are built many times, and elements go from rank to rank.
 TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
-  expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, {1, 2, 4}, 1e-10);
+  expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, 1e-10);
 }
 
 // Tethers within a rank and across ranks, one of which breaks on the way; then a run that goes on remembers it.
@@ -152,7 +164,7 @@ TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
       "breaks_at_nm = 6.9\n[[load]]\nkind = \"force\"\ntubes = [7]\nelements = [-1]\nforce_nN = [-15, 0, 0]\n",
                     cold = "[start]\ntemperature_K = 100\nmay_cool = true\n";
   const std::string scene_text = line_scene("double", small_rope, tethers + cold);
-  expect_equal_steps(scene_text, 300, {1, 2, 4}, 1e-10);
+  expect_equal_steps(scene_text, 300, 1e-10, {}, true);
   Scene scene = read_scene((dir / "scene.toml").string());
   Simulation native = start(scene, prepare(scene));
   native.steps(300);
@@ -163,16 +175,15 @@ TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
   EXPECT_EQ(energy[2], 0) << "it has broken";
   for (const int n : {1, 2, 4}) {
     SCOPED_TRACE(n);
-    fs::remove_all(dir / "parts");
-    exported(scene_text, "parts");
-    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var steps 150").code, 0);
-    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var from lammps.states -var steps 300").code, 0);
-    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "parts").string()}, 3).back();
+    const std::string half = "half-" + std::to_string(n);
+    ASSERT_EQ(lmp(n, half, "-in in.rope -var from lammps.states -var steps 300").code, 0);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / half).string()}, 3).back();
     EXPECT_EQ(row.step, 300);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(row.terms[k], energy[k], 1e-9 * (1 + energy[k])) << k;
     EXPECT_NEAR(row.dissipated, native.dissipated(), 1e-9 * native.dissipated());
-    ASSERT_EQ(run("import parts").code, 0);
-    EXPECT_EQ(read_log((dir / "parts/log.csv").string()).back()["tether_eV"], row.terms[0] + row.terms[1] + row.terms[2]);
+    ASSERT_EQ(run("import " + half).code, 0);
+    EXPECT_EQ(read_log((dir / half / "log.csv").string()).back()["tether_eV"],
+              row.terms[0] + row.terms[1] + row.terms[2]);
   }
 }
 
@@ -183,7 +194,7 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
       "[[friction]]\nstrength_pN_per_nm = 20\nspin_strength_pN_per_nm = 30\nend_strength_pN = 5\nelastic_slip_nm = 0.005\ndrag_eV_ps_per_nm3 = 0.02\n"
       "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
       "[start]\ntemperature_K = 100\nmay_cool = true\n");
-  expect_equal_steps(scene_text, 300, {1, 2, 4}, 1e-9);
+  expect_equal_steps(scene_text, 300, 1e-9, {}, true);
   Scene scene = read_scene((dir / "scene.toml").string());
   Simulation native = start(scene, prepare(scene));
   native.steps(300);
@@ -195,18 +206,16 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
   EXPECT_GT(account.events, 10);
   for (const int n : {1, 2, 4}) {
     SCOPED_TRACE(n);
-    fs::remove_all(dir / "parts");
-    exported(scene_text, "parts");
-    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var steps 150").code, 0);
-    ASSERT_EQ(lmp(n, "parts", "-in in.rope -var from lammps.states -var steps 300").code, 0);
-    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "parts").string()}, 1).back();
+    const std::string half = "half-" + std::to_string(n);
+    ASSERT_EQ(lmp(n, half, "-in in.rope -var from lammps.states -var steps 300").code, 0);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / half).string()}, 1).back();
     EXPECT_NEAR(row.terms[0], energy, 1e-8 * energy);
     EXPECT_NEAR(row.dissipated, native.dissipated(), 1e-8 * native.dissipated());
     EXPECT_NEAR(row.accounts[0].lost, account.lost, 1e-8 * account.lost);
     EXPECT_NEAR(row.accounts[0].drag, account.drag, 1e-8 * account.drag);
     EXPECT_NEAR(row.accounts[0].events, account.events, 1 + 0.01 * account.events) << "rounding decides some";
-    ASSERT_EQ(run("import parts").code, 0);
-    const LogRow imported = read_log((dir / "parts/log.csv").string()).back();
+    ASSERT_EQ(run("import " + half).code, 0);
+    const LogRow imported = read_log((dir / half / "log.csv").string()).back();
     EXPECT_EQ(imported["friction_slip_eV"], row.accounts[0].lost);
     EXPECT_EQ(imported["friction_slips"], row.accounts[0].events);
   }
@@ -215,8 +224,7 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
 TEST_F(LammpsRun, AFilmIsCutAndBalancedAgainAndAgain) {
   expect_equal_steps(line_scene("double", "[film]\ntubes = 8\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
-                     200, {1, 2, 4}, 1e-10,
-                     [&] { edit("out", "fix even all balance 1000", "fix even all balance 20"); });
+                     200, 1e-10, [&] { edit("out", "fix even all balance 1000", "fix even all balance 20"); });
 }
 
 TEST_F(LammpsRun, RanksWithoutElementsAndWithOneTakePart) {
@@ -227,7 +235,7 @@ TEST_F(LammpsRun, RanksWithoutElementsAndWithOneTakePart) {
   spit(dir / "tubes.csv", tubes);
   expect_equal_steps(line_scene("double", "element_length_nm = 1.356\n[state]\nfile = \"tubes.csv\"\n",
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
-                     100, {1, 2, 4}, 1e-10, [&] {
+                     100, 1e-10, [&] {
                        edit("out", "comm_style tiled\n", "processors 1 1 *\n");
                        edit("out", "balance 1.0 rcb\nfix even all balance 1000 1.01 rcb\n", "");
                      });
@@ -294,28 +302,44 @@ TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
   exported(line_scene("mixed", small_rope, hot_twist), "out");
   Scene scene = read_scene((dir / "scene.toml").string());
   const Topology topology = prepare(scene).topology;
-  const LammpsDirectory files{(dir / "out").string()};
+  struct Run {
+    Left left;
+    LammpsRow row;
+    std::string states, cut;
+  };
+  std::map<int, Run> whole;
   for (const int ranks : {1, 2, 4}) {
-    ASSERT_EQ(lmp(ranks, "out", "-in in.rope -var steps 240 -var every 80").code, 0);
-    const Left whole = left_by(dir / "out", topology);
-    const LammpsRow row = read_lammps_rows(files).back();
+    const std::string out = copied("out", "whole-" + std::to_string(ranks));
+    ASSERT_EQ(lmp(ranks, out, "-in in.rope -var steps 240 -var every 80").code, 0);
+    const LammpsDirectory files{(dir / out).string()};
     const std::vector<StateInFile> states = find_states(files.states(), topology.elements());
     ASSERT_EQ(states.size(), 3U);
     ASSERT_NE(states[1].header.skin, states[0].header.skin);
-    const std::string all = slurp(files.states());
-    for (const int then : {1, 2, 4}) {
-      SCOPED_TRACE(std::to_string(ranks) + " ranks, then " + std::to_string(then));
-      // Killed while it wrote the third state: its mark is not there yet.
-      std::string cut = all.substr(0, static_cast<std::size_t>(states[2].end()) - 1000);
-      std::fill_n(cut.begin() + static_cast<std::ptrdiff_t>(states[2].at), sizeof(StateHeader), '\0');
-      spit(files.states(), cut);
-      const Outcome o = lmp(then, "out", "-in in.rope -var steps 240 -var every 80 -var from lammps.states");
-      ASSERT_EQ(o.code, 0) << o.out << o.err;
-      expect_same_run(whole, left_by(dir / "out", topology), then == ranks ? 0 : 1e-5);
+    Run& begun = whole[ranks];
+    begun = {left_by(dir / out, topology), read_lammps_rows(files).back(), slurp(files.states()), ""};
+    // Killed while it wrote the third state: its mark is not there yet.
+    begun.cut = begun.states.substr(0, static_cast<std::size_t>(states[2].end()) - 1000);
+    std::fill_n(begun.cut.begin() + static_cast<std::ptrdiff_t>(states[2].at), sizeof(StateHeader), '\0');
+  }
+  for (const int then : {1, 2, 4}) {
+    const auto folder = [&](int ranks) { return std::to_string(ranks) + "-then-" + std::to_string(then); };
+    std::vector<Part> parts;
+    for (const auto& [ranks, begun] : whole) {
+      parts.push_back({copied("whole-" + std::to_string(ranks), folder(ranks)),
+                       {"steps 240", "every 80", "from lammps.states"}});
+      spit(dir / folder(ranks) / "lammps.states", begun.cut);
+    }
+    const Outcome o = lmp_each(then, parts);
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    for (const auto& [ranks, begun] : whole) {
+      SCOPED_TRACE(folder(ranks));
+      const LammpsDirectory files{(dir / folder(ranks)).string()};
+      expect_same_run(begun.left, left_by(dir / folder(ranks), topology), then == ranks ? 0 : 1e-5);
       EXPECT_EQ(find_states(files.states(), topology.elements()).size(), 3U);
-      EXPECT_EQ(slurp(files.states()) == all, then == ranks && then == 1);  // the account is summed by rank
+      EXPECT_EQ(slurp(files.states()) == begun.states,
+                then == ranks && then == 1);  // the account is summed by rank
       const double tolerance = then == ranks ? 1e-12 : 1e-5;
-      EXPECT_NEAR(read_lammps_rows(files).back().work, row.work, tolerance * row.work);
+      EXPECT_NEAR(read_lammps_rows(files).back().work, begun.row.work, tolerance * begun.row.work);
     }
   }
 }
@@ -370,10 +394,11 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
 }
 
 TEST_F(LammpsRun, BenchTimesBoth) {
-  const Outcome o = run("bench rope-91x50 --lammps 1 --steps 3 --json", leaks_allowed);
+  spit(dir / "scene.toml", rope(""));
+  const Outcome o = run("bench scene.toml --lammps 1 --steps 3 --json", leaks_allowed);
   ASSERT_EQ(o.code, 0) << o.err;
   const auto times = nlohmann::json::parse(o.out);
-  EXPECT_EQ(times["elements"], 4550);
+  EXPECT_EQ(times["elements"], 84);
   EXPECT_GT(times["native_ns_per_element_step"], 1);
   EXPECT_GT(times["lammps_ns_per_element_step"], 1);
   EXPECT_GT(times["lammps_processor_ns_per_element_step"], 1);
@@ -381,8 +406,9 @@ TEST_F(LammpsRun, BenchTimesBoth) {
 
 TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
   if (geteuid() != 0) GTEST_SKIP() << "only root is refused";
+  spit(dir / "scene.toml", rope(""));
   const auto without = [&](const std::string& variables) {
-    return run("bench rope-91x50 --lammps 2 --steps 3",
+    return run("bench scene.toml --lammps 2 --steps 3",
                "env -u OMPI_ALLOW_RUN_AS_ROOT -u OMPI_ALLOW_RUN_AS_ROOT_CONFIRM " + variables);
   };
   const Outcome o = without("");

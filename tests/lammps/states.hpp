@@ -11,8 +11,6 @@ struct FiveStates {
   std::vector<Curve> tubes;
 };
 
-inline std::ostream& operator<<(std::ostream& out, const FiveStates& s) { return out << s.name; }
-
 inline constexpr double a = element_length;
 inline const Vector3 ex = Vector3::UnitX(), ey = Vector3::UnitY(), ez = Vector3::UnitZ();
 

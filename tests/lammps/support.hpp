@@ -22,7 +22,7 @@ class Lammps : public Cli {
  protected:
   int threads = 1;  // of a rank
 
-  // lmp-ropewalk in a directory of an export; 0 ranks: without mpirun. `program`: another one.
+  // lmp-ropewalk in a directory of an export; one rank needs no mpirun. `program`: another one.
   Outcome lmp(int ranks, const std::string& folder, const std::string& arguments = "-in in.rope",
               const std::string& program = ROPEWALK_LMP) const {
     // Many tests at once share few cores: ranks that wait must let others work, and none is bound to a core.
@@ -34,7 +34,7 @@ class Lammps : public Cli {
         "--mca btl_vader_single_copy_mechanism none -np " +
         std::to_string(ranks);
     const std::string command = "cd '" + (dir / folder).string() + "' && " + environment +
-                                (ranks > 0 ? mpirun : "") + " '" + program + "' " + arguments +
+                                (ranks > 1 ? mpirun : "") + " '" + program + "' " + arguments +
                                 " > stdout.txt 2> stderr.txt < /dev/null";
     const int status = std::system(command.c_str());
     Outcome o;
@@ -44,11 +44,42 @@ class Lammps : public Cli {
     return o;
   }
 
+  // A run that shares a start of LAMMPS with others.
+  struct Part {
+    std::string folder;                  // of an export, one for each part
+    std::vector<std::string> variables;  // "steps 100"
+  };
+
+  // All parts one after another in one start, which costs more than they do. What a part prints is in log.lammps of
+  // its folder.
+  Outcome lmp_each(int ranks, const std::vector<Part>& parts) const {
+    std::string script;
+    for (const Part& part : parts) {
+      script += "clear\nshell cd '" + (dir / part.folder).string() + "'\nlog log.lammps\n";
+      for (const char* name : {"dir", "open", "from", "forces", "steps", "every"})
+        script += "variable " + std::string(name) + " delete\n";
+      for (const std::string& variable : part.variables) {
+        const std::size_t space = variable.find(' ');
+        script += "variable " + variable.substr(0, space) + " index" + variable.substr(space) + "\n";
+      }
+      script += "include in.rope\n";
+    }
+    spit(dir / "in.parts", script);
+    return lmp(ranks, ".", "-in in.parts");
+  }
+
   // Writes the scene and exports it to `folder`.
   void exported(const std::string& scene, const std::string& folder) const {
     spit(dir / "scene.toml", scene);
     const Outcome o = run("export scene.toml --force --lammps " + folder);
     ASSERT_EQ(o.code, 0) << o.err;
+  }
+
+  // Another folder of the same export, whose name is returned.
+  std::string copied(const std::string& folder, const std::string& to) const {
+    fs::remove_all(dir / to);
+    fs::copy(dir / folder, dir / to);
+    return to;
   }
 
   // Replaces a part of in.rope, which must be there.
