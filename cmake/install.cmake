@@ -58,7 +58,7 @@ endforeach()
 set(config_directory ${CMAKE_INSTALL_LIBDIR}/cmake/Ropewalk)
 install(TARGETS ${library_targets} EXPORT RopewalkTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/ropewalk
         COMPONENT development)
-install(DIRECTORY mdem/ DESTINATION include/ropewalk COMPONENT development FILES_MATCHING PATTERN "*.hpp"
+install(DIRECTORY mdem/ DESTINATION include/ropewalk COMPONENT development FILES_MATCHING PATTERN "*.hpp" REGEX "/model/.*\\.h$"
         PATTERN bench EXCLUDE PATTERN commands EXCLUDE PATTERN lammps EXCLUDE PATTERN python EXCLUDE)
 install(EXPORT RopewalkTargets NAMESPACE Ropewalk:: DESTINATION ${config_directory} COMPONENT development)
 set(ROPEWALK_INSTALLED_DATA ${CMAKE_INSTALL_DATADIR}/ropewalk)

@@ -34,7 +34,7 @@ double BondVBond::equilibrium_distance(int type) {
   return model_->topology.types[static_cast<std::size_t>(type - 1)].element_length;
 }
 
-BondForce<double> BondVBond::evaluate(int i, int j, const Vector3& separation) const {
+BondForce BondVBond::evaluate(int i, int j, const Vector3& separation) const {
   double** q = orientations_;
   const TubeType& type = type_of(*model_, *atom, i);
   return bond_energy_and_gradient(type.bond, type.element_length, separation, frame_of(quaternion(q[i])),
@@ -45,13 +45,13 @@ double BondVBond::single(int, double, int i, int j, double& fforce) {
   orientations_ = orientations(lmp);
   const int low = atom->tag[i] < atom->tag[j] ? i : j, high = low == i ? j : i;
   const Vector3 separation = vector(atom->x[high]) - vector(atom->x[low]);
-  const BondForce<double> f = evaluate(low, high, separation);
+  const BondForce f = evaluate(low, high, separation);
   fforce = f.force_j.dot(separation) / separation.squaredNorm();
   return f.energy.total();
 }
 
 // The virial of a bond. LAMMPS's own tally assumes a force along the bond, which this force is not.
-void BondVBond::tally(int i, int j, const BondForce<double>& f, const Vector3& separation) {
+void BondVBond::tally(int i, int j, const BondForce& f, const Vector3& separation) {
   const Vector3 &s = separation, &p = f.force_j;
   const double v[6] = {s.x() * p.x(), s.y() * p.y(), s.z() * p.z(), s.x() * p.y(), s.x() * p.z(), s.y() * p.z()};
   if (eflag_global) energy += f.energy.total();
@@ -85,7 +85,7 @@ void BondVBond::report(RankEngine& engine) {
 
 void BondVBond::apply(int i, int j) {
   const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
-  const BondForce<double> f = evaluate(i, j, separation);
+  const BondForce f = evaluate(i, j, separation);
   sum_.stretch += f.energy.stretch;
   sum_.shear += f.energy.shear;
   sum_.bend += f.energy.bend;

@@ -20,18 +20,18 @@ class BondVBond : public LMP::Bond {
   void read_restart(FILE*) override {}
   double single(int type, double rsq, int i, int j, double& fforce) override;
 
-  const BondEnergy<double>& own_energy() const { return sum_; }  // of this rank's bonds in the last evaluation
+  const BondEnergy& own_energy() const { return sum_; }  // of this rank's bonds in the last evaluation
 
  private:
-  BondForce<double> evaluate(int i, int j, const Vector3& separation) const;
+  BondForce evaluate(int i, int j, const Vector3& separation) const;
   void report(RankEngine& engine);
   [[noreturn]] void refuse_slip(int element);
   void apply(int i, int j);
-  void tally(int i, int j, const BondForce<double>& f, const Vector3& separation);
+  void tally(int i, int j, const BondForce& f, const Vector3& separation);
 
   std::shared_ptr<const LammpsModel> model_;
   double** orientations_ = nullptr;  // valid during a call only
-  BondEnergy<double> sum_;
+  BondEnergy sum_;
 };
 
 // Calls f(i, j) for every bond of this rank, i being the lower element.

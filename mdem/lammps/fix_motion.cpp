@@ -225,7 +225,7 @@ double FixMotion::own_kinetic_energy() const {
 }
 
 std::vector<double> FixMotion::energies() const {
-  BondEnergy<double> bonds;
+  BondEnergy bonds;
   if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
   const auto* pair = dynamic_cast<const PairMdem*>(force->pair);
   std::vector<double> own = {

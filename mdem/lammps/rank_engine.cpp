@@ -322,7 +322,7 @@ void RankEngine::compute(bool energies) {
   shared_forces_there_ = leads_ && !all;
 }
 
-BondEnergy<double> RankEngine::bond_energy() const {
+BondEnergy RankEngine::bond_energy() const {
   const Energies& e = forces_.energy;
   return {e.stretch, e.shear, e.bend, e.twist};
 }

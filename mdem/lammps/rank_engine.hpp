@@ -76,7 +76,7 @@ class RankEngine {
   void set_memory(std::vector<double> memory) { first_memory_ = std::move(memory); }
 
   // Energies of this rank's pairs and bonds in the last evaluation.
-  BondEnergy<double> bond_energy() const;
+  BondEnergy bond_energy() const;
   double contact_energy();  // evaluates the contact again where the last time left it out
   double damping_power() const { return forces_.damping_power; }  // eV/ps
   const std::vector<double>& term_energy() const { return forces_.term_energy; }  // of each force term

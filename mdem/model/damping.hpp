@@ -16,20 +16,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "model/bond.hpp"  // Vector3
 
 namespace ropewalk {
 
-// Opposite forces at one point, as seen at the two centres. V: Eigen's vectors, or plain ones for hot loops.
-template <class V>
-struct PairDamping {
-  V force_j;
-  V torque_i, torque_j;
+// Opposite forces at one point, as seen at the two centres.
+struct DampingForce {
+  Vector3 force_j;
+  Vector3 torque_i, torque_j;
   double power = 0;  // work per time done on the pair, never positive (eV/ps)
 };
-using DampingForce = PairDamping<Vector3>;
 
 struct ContactViscosity {
   double eta = 0;    // eV ps/nm^2
@@ -79,21 +76,11 @@ struct BondDamping {
     return largest;
   }
 
-  template <class V = Vector3>
-  PairDamping<V> force(double mass, double inertia, const std::common_type_t<V>& separation,
-                       const std::common_type_t<V>& v_i, const std::common_type_t<V>& w_i,
-                       const std::common_type_t<V>& v_j, const std::common_type_t<V>& w_j) const {
-    const V arm = 0.5 * separation;
-    const V relative = v_j - v_i - (w_i + w_j).cross(arm);
-    const V spin = w_j - w_i;
-    const V couple = -0.5 * rate * inertia * spin;
-    PairDamping<V> f;
-    f.force_j = -0.5 * rate * mass * relative;
-    const V lever = -arm.cross(f.force_j);
-    f.torque_i = lever - couple;
-    f.torque_j = lever + couple;
-    f.power = f.force_j.dot(relative) + couple.dot(spin);
-    return f;
+  DampingForce force(double mass, double inertia, const Vector3& separation, const Vector3& v_i, const Vector3& w_i,
+                     const Vector3& v_j, const Vector3& w_j) const {
+    const forms::PairDamping f =
+        forms::bond_damping(rate, mass, inertia, plain(separation), plain(v_i), plain(w_i), plain(v_j), plain(w_j));
+    return {vector(f.force_j), vector(f.torque_i), vector(f.torque_j), f.power};
   }
 };
 

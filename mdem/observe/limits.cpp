@@ -25,12 +25,12 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   Peaks out;
   for (std::size_t k = 0; k < limit_count; ++k) out[k].limit = limits.*limit_kinds()[k].limit;
   const int from = topology.tube_begin[tube], to = topology.tube_begin[tube + 1];
-  Frame<double> frame = frame_of(state.orientation[static_cast<std::size_t>(from)]);
+  Frame frame = frame_of(state.orientation[static_cast<std::size_t>(from)]);
   for (int e = from; e < to; ++e) {
     const auto i = static_cast<std::size_t>(e);
     raise(out[speed], state.velocity[i].norm(), e);
     if (e + 1 == to) break;
-    const Frame<double> next = frame_of(state.orientation[i + 1]);
+    const Frame next = frame_of(state.orientation[i + 1]);
     const double bent = std::atan2(frame.t.cross(next.t).norm(), frame.t.dot(next.t));
     const double twisted = std::fabs(bond_twist_angle(frame, next));
     raise(out[bend], bent, e);

@@ -14,7 +14,7 @@ void bond_features(const Topology& topology, const State& s, SceneFeatures& f) {
     const double a = topology.type_of(t).element_length;
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[i + 1]);
+      const Frame fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[i + 1]);
       f.curvature = std::max(f.curvature, 2 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0)) / a);
       f.twist = std::max(f.twist, std::fabs(bond_twist_angle(fi, fj)) / a);
     }

@@ -43,7 +43,7 @@ void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
     const double a = topology.type_of(t).element_length;
     for (int i = from; i + 1 < to; ++i) {
       const auto si = static_cast<std::size_t>(i), sj = si + 1;
-      const Frame<double> fi = frame_of(s.orientation[si]), fj = frame_of(s.orientation[sj]);
+      const Frame fi = frame_of(s.orientation[si]), fj = frame_of(s.orientation[sj]);
       const double energy = bond_energy(bond, a, Vector3(s.position[sj] - s.position[si]), fi, fj).total();
       const double moment = bending_moment(bond, a, fi.t, fj.t);
       const double twist = bond_twist_angle(fi, fj);

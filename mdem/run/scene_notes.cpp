@@ -18,7 +18,7 @@ namespace {
 // Moment over curvature of a chain of bonds bent by d each is 1 + (3 s/8 - 1/6) d^2 of the rod's.
 void warn_of_long_elements(const ParameterSet& set, double length, std::vector<std::string>& warnings) {
   const double bend = set.validity.kink_curvature * length;
-  const double error = std::fabs(0.375 * set.bond.shear_share(length) - 1.0 / 6) * bend * bend;
+  const double error = std::fabs(0.375 * shear_share(set.bond, length) - 1.0 / 6) * bend * bend;
   if (error > 0.01)
     warnings.push_back(fmt::format(
         "Elements of {:.3g} nm of {} are bent by {:.2f} rad each where the tube kinks, and its stiffness is "

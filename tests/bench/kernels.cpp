@@ -28,7 +28,7 @@ BENCHMARK(PaperPair);
 void Bond(benchmark::State& bench) {
   const BondStiffness k = test::published_bond();
   test::Random random(2);
-  const Frame<double> i = frame_of(random.orientation()), j = frame_of(test::turn(random.direction(), 0.1));
+  const Frame i = frame_of(random.orientation()), j = frame_of(test::turn(random.direction(), 0.1));
   const Vector3 separation(0.1, 0, 1.35);
   for (auto _ : bench)
     benchmark::DoNotOptimize(bond_energy_and_gradient(k, test::element_length, separation, i, j));

@@ -6,7 +6,7 @@
 #
 #   tests/device/compilers.sh SOURCE_DIR       exit code 77: neither compiler is there
 set -euo pipefail
-kernels=$1/mdem/sim/device
+model=$1/mdem/model kernels=$1/mdem/sim/device
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -r "$scratch"' EXIT
@@ -18,7 +18,7 @@ numbers() { printf '#define NODES %s\n#define TYPES %s\n#define LOCAL_TYPES TYPE
 clang=$(command -v clang || command -v clang-15 || true)
 if [ -n "$clang" ]; then
   compilers=$((compilers + 1))
-  { numbers 5 1; cat "$kernels"/{dialect.h,types.h,kernels.h}; } > "$scratch/kernels.cl"
+  { numbers 5 1; cat "$model"/{dialect,forms}.h "$kernels"/{dialect,types,kernels}.h; } > "$scratch/kernels.cl"
   "$clang" -x cl -cl-std=CL1.2 -Wall -pedantic-errors -Werror -fsyntax-only -Xclang -finclude-default-header "$scratch/kernels.cl"
   echo "$clang takes the kernels as OpenCL C 1.2"
 fi
@@ -26,7 +26,7 @@ fi
 if nvcc=$(command -v nvcc); then
   compilers=$((compilers + 1))
   for types in 1 6; do
-    { numbers 5 "$types"; cat "$here/cuda_dialect.h" "$kernels"/{types.h,kernels.h}; } > "$scratch/kernels.cu"
+    { numbers 5 "$types"; cat "$here/cuda_dialect.h" "$model/forms.h" "$kernels"/{types,kernels}.h; } > "$scratch/kernels.cu"
     "$nvcc" -arch=sm_90 -fmad=false -Xptxas -v -cubin -o "$scratch/kernels.cubin" "$scratch/kernels.cu" 2> "$scratch/told"
     awk -v types="$types" '
       /Compiling entry function/ { split($0, of, "\x27"); kernel = of[2] }

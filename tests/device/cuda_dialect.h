@@ -1,4 +1,4 @@
-// Defines the macros of mdem/sim/device/dialect.h for CUDA, so that nvcc can compile the kernels and report the registers of
+// Defines the macros of mdem/model/dialect.h and mdem/sim/device/dialect.h for CUDA, so that nvcc can compile the kernels and report the registers of
 // each kernel.
 #define KERNEL extern "C" __global__ void __launch_bounds__(128)
 #define OF_GROUP
@@ -12,9 +12,8 @@
 #define FLOAT_OF(i) __int_as_float(i)
 #define FMA(a, b, c) fmaf(a, b, c)
 #define SQRT_FLOAT(x) sqrtf(x)
-#define SQRT(x) sqrt(x)
-#define FABS(x) fabs(x)
 #define WHOLE(x) ((int)(unsigned)(long long)rint(x))
 #define FLOOR(x) floor(x)
 #define ATOMIC_INCREMENT(x) atomicAdd(x, 1)
 #define FUNCTION __device__ __forceinline__
+#define DEFAULT_0

@@ -255,7 +255,7 @@ double ring_energy_error(int bonds, double circumference) {
     const auto at = [&](double angle) {
       return Vector3(0, radius * (1 - std::cos(angle)), radius * std::sin(angle));
     };
-    energy += bond_energy<double>(k, a, at(q) - at(p), frame(p), frame(q)).total();
+    energy += bond_energy(k, a, at(q) - at(p), frame(p), frame(q)).total();
   }
   const double turn = 2 * units::pi;
   const double continuum = 0.5 * k.bend * turn * turn / (bonds * a);

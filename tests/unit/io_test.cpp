@@ -580,7 +580,7 @@ TEST(Vtp, HoldsPointsLinesAndColours) {
   ASSERT_EQ(director.size(), 24u);
   ASSERT_EQ(moment.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) {
-    const Frame<double> frame = frame_of(f.state.orientation[i]);
+    const Frame frame = frame_of(f.state.orientation[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto c = static_cast<Eigen::Index>(k);
       EXPECT_EQ(points[3 * i + k], static_cast<float>(f.state.position[i][c]));

@@ -401,7 +401,7 @@ TEST(SpotCheck, SeesWhatLongElementsCost) {
   const BondStiffness bond = scene_from(lone).parameters().bond;
   const auto excess = [&](double a) {
     const double d = 8 * units::nN_nm * a / bond.bend;
-    return d * d * (0.25 - 0.5625 * bond.shear_share(a));
+    return d * d * (0.25 - 0.5625 * shear_share(bond, a));
   };
   EXPECT_NEAR(coarse.observables.at("energy").error(), std::fabs(excess(5) - excess(2.5)), 2e-5);
   EXPECT_NEAR(fine.observables.at("energy").error(), std::fabs(excess(2.5) - excess(1.25)), 2e-6);

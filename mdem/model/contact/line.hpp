@@ -33,6 +33,7 @@
 #include <cmath>
 
 #include "model/contact/contact.hpp"
+#include "model/forms.hpp"
 
 namespace ropewalk {
 
@@ -95,8 +96,7 @@ struct LineContact {
   double energy_by(const U& u, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const;
 };
 
-// Place of node k of `nodes` on an element, from its centre (nm).
-inline double line_node(int k, int nodes, double length) { return ((k + 0.5) / nodes - 0.5) * length; }
+using forms::line_node;
 
 // Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at
 // rest: along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2.5e-4 of the well at rest and

@@ -117,7 +117,7 @@ class TubeFailure : public ForceTerm {
     all_.insert(std::upper_bound(all_.begin(), all_.end(), one,
                                  [](const BrokenBond& x, const BrokenBond& y) { return x.element < y.element; }),
                 one);
-    return static_cast<double>(bonds.size()) * bond_energy<double>(type.bond, type.element_length, d,
+    return static_cast<double>(bonds.size()) * bond_energy(type.bond, type.element_length, d,
                                                                    frame_of(state.orientation[i]),
                                                                    frame_of(state.orientation[i + 1]))
                                                    .total();

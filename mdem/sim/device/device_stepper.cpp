@@ -10,10 +10,10 @@
 #include "model/contract.hpp"
 #include "sim/contact/line/list.hpp"
 #include "sim/contact/line/radial_table.hpp"
-#include "sim/device/types.h"
 #include "sim/neighbours/excluded.hpp"
 
 namespace ropewalk {
+#include "sim/device/types.h"
 namespace {
 
 const LineLaw* law_of(const Interaction& in) { return dynamic_cast<const LineLaw*>(in.law.get()); }
@@ -22,22 +22,6 @@ int nodes_of(const LineLaw& law) {
   int most = 1;
   for (const LineContact& pair : law.pairs) most = std::max(most, pair.nodes_i);
   return most;
-}
-
-ElementType element_type(const TubeType& type) {
-  const BondStiffness& k = type.bond;
-  const Anharmonic& h = k.anharmonic;
-  ElementType out{};
-  out.mass = type.mass, out.inertia = type.inertia, out.length = type.element_length;
-  out.stretch = k.stretch, out.bend = k.bend, out.twist = k.twist,
-  out.shear_share = k.shear_share(type.element_length);
-  out.radius = h.radius, out.coupling = h.coupling;
-  out.e3 = h.e3, out.e2s = h.e2s, out.es2 = h.es2, out.s3 = h.s3, out.e4 = h.e4, out.e3s = h.e3s, out.e2s2 = h.e2s2,
-  out.es3 = h.es3, out.s4 = h.s4, out.b4 = h.b4;
-  out.min_strain = h.min_strain, out.max_strain = h.max_strain, out.max_shear = h.max_shear,
-  out.max_bend = h.max_bend;
-  out.anharmonic = h.used ? 1 : 0;
-  return out;
 }
 
 LineTables line_tables(const LineLaw& law, int types, double unit) {
@@ -121,7 +105,8 @@ DeviceStepper::DeviceStepper(const Topology& topology, const Interaction& intera
   device_->write(contact_force_, nothing.data(), quad);
   device_->write(contact_torque_, nothing.data(), quad);
   std::vector<ElementType> types;
-  for (const TubeType& type : topology.types) types.push_back(element_type(type));
+  for (const TubeType& t : topology.types)
+    types.push_back({t.mass, t.inertia, t.element_length, shear_share(t.bond, t.element_length), t.bond});
   types_ = send(types);
   for (buckets_ = 64; buckets_ < elements_ / 2; buckets_ *= 2) {
   }

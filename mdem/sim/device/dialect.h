@@ -1,20 +1,14 @@
-// Macros in which kernels.h is written: once for OpenCL C, once for C++.
+// Macros in which kernels.h is written, beside those of model/dialect.h: once for OpenCL C, once for C++.
 //
 // A kernel runs once for every group of GROUP work items, in phases: FOR_ITEMS(t) { ... } is one phase, run by every
 // item t of the group, and BARRIER stands between two phases. What a phase leaves to the next lies in LOCAL arrays. In
 // C++ a phase is a loop over the items.
 //
-// Both compilers give the same bits: each operation is rounded by itself, and products are fused with sums where FMA
-// says so and nowhere else. + - * / sqrt of doubles and + - * fma of floats are the same on every device (IEEE 754);
-// / and sqrt of floats, and floats below 1e-38, where the device says so. No exp, log or atan2, whose last bits differ.
-//
-// OpenCL C has no overloads and no macros with any number of arguments, and reserves names: half, dot, cross, ...
+// Floats: + - * fma are the same on every device (IEEE 754); products are fused with sums where FMA says so and nowhere
+// else. / and sqrt of floats, and floats below 1e-38, are the same where the device says so.
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#pragma OPENCL FP_CONTRACT OFF
 #define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
 #define OF_GROUP
-#define GLOBAL __global
 #define LOCAL __local
 #define TO_LOCAL __local  // of a pointer
 #define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
@@ -24,16 +18,12 @@
 #define FLOAT_OF(i) as_float(i)
 #define FMA(a, b, c) fma(a, b, c)
 #define SQRT_FLOAT(x) sqrt(x)
-#define SQRT(x) sqrt(x)
-#define FABS(x) fabs(x)
 #define WHOLE(x) ((int)(uint)(long)rint(x))
 #define FLOOR(x) floor(x)
 #define ATOMIC_INCREMENT(x) atomic_inc(x)
-#define FUNCTION
 #else
 #define KERNEL void
 #define OF_GROUP int GROUP_NUMBER,  // first argument of a kernel
-#define GLOBAL
 #define LOCAL
 #define TO_LOCAL
 #define BARRIER
@@ -42,10 +32,7 @@
 #define FLOAT_OF(i) float_of(i)
 #define FMA(a, b, c) __builtin_fmaf(a, b, c)
 #define SQRT_FLOAT(x) __builtin_sqrtf(x)
-#define SQRT(x) __builtin_sqrt(x)
-#define FABS(x) __builtin_fabs(x)
 #define WHOLE(x) whole(x)
 #define FLOOR(x) __builtin_floor(x)
 #define ATOMIC_INCREMENT(x) __atomic_fetch_add(x, 1, __ATOMIC_RELAXED)
-#define FUNCTION static inline
 #endif

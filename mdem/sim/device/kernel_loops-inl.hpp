@@ -3,6 +3,7 @@ namespace ropewalk {
 namespace ROPEWALK_UNIT {
 namespace {
 
+using namespace forms;
 #include "sim/device/kernels.h"
 
 // Calls a kernel with the values that `arguments` point to.

@@ -1,5 +1,5 @@
 // The kernels of a step of velocity Verlet (sim/dynamics/verlet.hpp), for a device and for C++. Before this text:
-// dialect.h, types.h and the numbers GROUP, LANES, NODES, TYPES.
+// model/dialect.h, dialect.h, model/forms.h, types.h and the numbers NODES, TYPES, LOCAL_TYPES.
 //
 // The state is held in columns. A column has one number for every element; two columns begin `stride` numbers apart. The
 // number before a quantity is its first column:
@@ -14,15 +14,6 @@
 // nm, ps, eV. Coordinates of the contact are whole numbers of LineTables::unit modulo 2^32
 // (sim/contact/shared/wrapped.hpp).
 
-typedef struct {
-  double x, y, z;
-} Vec;
-
-FUNCTION Vec vec(double x, double y, double z) {
-  Vec v;
-  v.x = x, v.y = y, v.z = z;
-  return v;
-}
 FUNCTION Vec vec_at(GLOBAL const double* a, int column, int stride, int i) {
   return vec(a[column * stride + i], a[(column + 1) * stride + i], a[(column + 2) * stride + i]);
 }
@@ -31,18 +22,6 @@ FUNCTION void vec_store(Vec v, GLOBAL double* a, int column, int stride, int i) 
   a[(column + 1) * stride + i] = v.y;
   a[(column + 2) * stride + i] = v.z;
 }
-FUNCTION Vec vec_sum(Vec a, Vec b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
-FUNCTION Vec vec_difference(Vec a, Vec b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
-FUNCTION Vec vec_scaled(double k, Vec a) { return vec(k * a.x, k * a.y, k * a.z); }
-FUNCTION double vec_dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-FUNCTION Vec vec_cross(Vec a, Vec b) {
-  return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-FUNCTION double vec_norm2(Vec a) { return vec_dot(a, a); }
-
-FUNCTION double smaller(double a, double b) { return a < b ? a : b; }
-FUNCTION double larger(double a, double b) { return a > b ? a : b; }
-FUNCTION double within(double x, double low, double high) { return smaller(larger(x, low), high); }
 
 // --- motion -------------------------------------------------------------------------------------------
 
@@ -72,15 +51,6 @@ KERNEL put_motion(OF_GROUP GLOBAL const int* which, GLOBAL const double* rows, i
   }
 }
 
-// sin(h)/h and cos(h) of the square of h.
-FUNCTION double sine_over(double h2) {
-  return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 * (1.0 / 39916800)))));
-}
-FUNCTION double cosine(double h2) {
-  return 1 + h2 * (-0.5 + h2 * (1.0 / 24 + h2 * (-1.0 / 720 + h2 * (1.0 / 40320 + h2 * (-1.0 / 3628800 +
-                                                                                       h2 * (1.0 / 479001600))))));
-}
-
 // Moves the elements of the device:  x += v dt,  q <- exp(w dt) q  (move_elements in sim/state/motion.hpp). Then writes,
 // for all elements, the copies in floats that the contact reads, and the displacements since the list was built
 // (largest_change in sim/state/motion.hpp).
@@ -92,24 +62,15 @@ KERNEL drift(OF_GROUP GLOBAL double* motion, GLOBAL const int* kind, GLOBAL cons
     if (i < elements) {
       Vec x = vec_at(motion, 0, stride, i);
       const Vec v = vec_at(motion, 7, stride, i), w = vec_at(motion, 10, stride, i);
-      double qw = motion[3 * stride + i], qx = motion[4 * stride + i], qy = motion[5 * stride + i],
-             qz = motion[6 * stride + i];
-      const double v2 = vec_norm2(v), w2 = vec_norm2(w);
+      Turn q = turn(motion[3 * stride + i], motion[4 * stride + i], motion[5 * stride + i], motion[6 * stride + i]);
       if (!(kind[i] & KIND_HOSTED)) {
         x = vec_sum(x, vec_scaled(dt, v));
-        const double h2 = 0.25 * dt * dt * w2, scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
-        const double ax = scale * w.x, ay = scale * w.y, az = scale * w.z;
-        const double rw = c * qw - ax * qx - ay * qy - az * qz;
-        const double rx = c * qx + ax * qw + ay * qz - az * qy;
-        const double ry = c * qy + ay * qw + az * qx - ax * qz;
-        const double rz = c * qz + az * qw + ax * qy - ay * qx;
-        const double unit = 1.5 - 0.5 * (rw * rw + rx * rx + ry * ry + rz * rz);
-        qw = unit * rw, qx = unit * rx, qy = unit * ry, qz = unit * rz;
+        q = turned(w, dt, q);
         vec_store(x, motion, 0, stride, i);
-        motion[3 * stride + i] = qw;
-        vec_store(vec(qx, qy, qz), motion, 4, stride, i);
+        motion[3 * stride + i] = q.w;
+        vec_store(vec(q.x, q.y, q.z), motion, 4, stride, i);
       }
-      const Vec n = vec(2 * (qx * qz + qw * qy), 2 * (qy * qz - qw * qx), 1 - 2 * (qx * qx + qy * qy));
+      const Vec n = turn_axis(q);
       int4 at;
       at.x = WHOLE(x.x * per_unit), at.y = WHOLE(x.y * per_unit), at.z = WHOLE(x.z * per_unit);
       at.w = kind[i] & KIND_TYPE;
@@ -124,15 +85,15 @@ KERNEL drift(OF_GROUP GLOBAL double* motion, GLOBAL const int* kind, GLOBAL cons
 
       const Vec was = vec_at(reference, 0, stride, i), axis_was = vec_at(reference, 3, stride, i);
       const double px = was.x - twist.x, py = was.y - twist.y, pz = was.z - twist.middle;
-      const double s = within(twist.sine + twist.slope * pz, -twist.most, twist.most), c = SQRT(1 - s * s);
+      const double s = within(twist.sine + twist.slope * pz, -twist.most, twist.most), c = sqrt(1 - s * s);
       const double ux = x.x - twist.x, uy = x.y - twist.y;
       const Vec moved = vec(ux - (c * px - s * py), uy - (s * px + c * py), x.z - was.z);
-      const Vec turned = vec(n.x - (c * axis_was.x - s * axis_was.y), n.y - (s * axis_was.x + c * axis_was.y),
+      const Vec tilted = vec(n.x - (c * axis_was.x - s * axis_was.y), n.y - (s * axis_was.x + c * axis_was.y),
                              n.z - axis_was.z);
       const double product = px * uy - py * ux;
-      told[TOLD_SPEED2 * stride + i] = v2;
-      told[TOLD_SPIN2 * stride + i] = w2;
-      told[TOLD_MOVED * stride + i] = SQRT(vec_norm2(moved)) + twist.lever * SQRT(vec_norm2(turned));
+      told[TOLD_SPEED2 * stride + i] = vec_norm2(v);
+      told[TOLD_SPIN2 * stride + i] = vec_norm2(w);
+      told[TOLD_MOVED * stride + i] = sqrt(vec_norm2(moved)) + twist.lever * sqrt(vec_norm2(tilted));
       told[TOLD_TURN * stride + i] = product;
       told[TOLD_TURN_Z * stride + i] = pz * product;
     }
@@ -178,10 +139,10 @@ FUNCTION int may_touch(GLOBAL const double* reference, GLOBAL const int* kind, G
   const int type_i = kind[i] & KIND_TYPE, type_j = kind[j] & KIND_TYPE;
   const int nodes_i = tables->row[type_i].count, nodes_j = tables->row[type_j].count;
   const Vec n_i = vec_at(reference, 3, stride, i), n_j = vec_at(reference, 3, stride, j);
-  const double rim = ((nodes_i - 0.5) / nodes_i - 0.5) * types[type_i].length;
+  const double rim = line_node(nodes_i - 1, nodes_i, types[type_i].length);
   double least = 1e300;
   for (int l = 0; l < nodes_j; ++l) {
-    const Vec d = vec_sum(apart, vec_scaled(((l + 0.5) / nodes_j - 0.5) * types[type_j].length, n_j));
+    const Vec d = vec_sum(apart, vec_scaled(line_node(l, nodes_j, types[type_j].length), n_j));
     const double along = within(vec_dot(d, n_i), -rim, rim);
     least = smaller(least, vec_norm2(vec_difference(d, vec_scaled(along, n_i))));
   }
@@ -366,88 +327,19 @@ KERNEL viscosity(OF_GROUP GLOBAL const int4* centre, GLOBAL const float4* veloci
 
 // --- bonds --------------------------------------------------------------------------------------------
 
-typedef struct {
-  Vec e1, e2, t;
-} BodyFrame;
-
 FUNCTION BodyFrame frame_at(GLOBAL const double* motion, int stride, int i) {
-  const double w = motion[3 * stride + i], x = motion[4 * stride + i], y = motion[5 * stride + i],
-               z = motion[6 * stride + i];
-  BodyFrame f;
-  f.e1 = vec(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y));
-  f.e2 = vec(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x));
-  f.t = vec(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));
-  return f;
-}
-
-typedef struct {
-  Vec force_j, torque_i, torque_j;
-} BondAction;
-
-// harmonic_force and anharmonic_force of model/bond.hpp.
-FUNCTION BondAction harmonic_bond(GLOBAL const ElementType* k, Vec separation, BodyFrame i, BodyFrame j) {
-  const double a = k->length, length = SQRT(vec_norm2(separation));
-  const Vec d = vec_scaled(1 / length, separation), s = vec_sum(i.t, j.t);
-  const double b2 = 12.0 * k->shear_share * k->bend / a, b4 = k->twist / a;
-  const double b3 = (1.0 - 3.0 * k->shear_share) * k->bend / a - 0.5 * b4;
-  const Vec frames = vec_sum(vec_scaled(0.5 * b4, vec_sum(vec_cross(i.e1, j.e1), vec_cross(i.e2, j.e2))),
-                             vec_scaled(b3, vec_cross(i.t, j.t)));
-  BondAction out;
-  out.force_j = vec_sum(vec_scaled(-(k->stretch / a) * (length - a), d),
-                        vec_scaled(0.5 * b2 / length, vec_difference(s, vec_scaled(vec_dot(s, d), d))));
-  out.torque_i = vec_sum(vec_scaled(-0.5 * b2, vec_cross(d, i.t)), frames);
-  out.torque_j = vec_difference(vec_scaled(-0.5 * b2, vec_cross(d, j.t)), frames);
-  return out;
+  return turn_frame(
+      turn(motion[3 * stride + i], motion[4 * stride + i], motion[5 * stride + i], motion[6 * stride + i]));
 }
 
 // The angle of the vector (x, y) for x > 0. The tangent of a quarter of the angle follows from two square roots, and the
 // series of the arc tangent gives this quarter. The functions atan2 of different compilers differ in their last bits.
 FUNCTION double angle_of(double y, double x) {
-  const double tangent = y / (SQRT(x * x + y * y) + x);  // of the half angle
-  const double t = tangent / (1 + SQRT(1 + tangent * tangent)), u = t * t;
+  const double tangent = y / (sqrt(x * x + y * y) + x);  // of the half angle
+  const double t = tangent / (1 + sqrt(1 + tangent * tangent)), u = t * t;
   double sum = 0;
   for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - u * sum;
   return 4 * t * sum;
-}
-
-FUNCTION BondAction anharmonic_bond(GLOBAL const ElementType* k, Vec separation, BodyFrame i, BodyFrame j) {
-  const double a = k->length, length = SQRT(vec_norm2(separation));
-  const Vec d = vec_scaled(1 / length, separation), sum = vec_sum(i.t, j.t);
-  const double u = vec_norm2(vec_difference(i.t, j.t)) * 0.5, arc = 1.0 + u * (1.0 / 12);
-  const double strain = length * arc / a - 1.0;
-  const double twist = angle_of(vec_dot(i.e2, j.e1) - vec_dot(i.e1, j.e2), vec_dot(i.e1, j.e1) + vec_dot(i.e2, j.e2)) / a;
-  const double curvature2 =
-      2.0 * u * (1.0 + u * (1.0 / 6 + u * (2.0 / 45 + u * (1.0 / 70 + u * (8.0 / 1575))))) / (a * a);
-  const double curvature2_slope =
-      2.0 * (1.0 + u * (2.0 / 6 + u * (6.0 / 45 + u * (4.0 / 70 + u * (40.0 / 1575))))) / (a * a);
-  // Derivatives of the energy per length (model/anharmonic.hpp).
-  const double r = k->radius, shear = r * twist;
-  const double e = within(strain, k->min_strain, k->max_strain), s = within(shear, -k->max_shear, k->max_shear);
-  const double de = strain - e, ds = shear - s;
-  const double of_twist = r * (s * (k->twist / (r * r) + s * (3 * k->s3 + 4 * s * k->s4)));
-  const double a1 = s * s * (k->es2 + s * k->es3), a1s = s * (2 * k->es2 + 3 * s * k->es3);
-  const double a2 = s * (k->e2s + s * k->e2s2), a2s = k->e2s + 2 * s * k->e2s2, a3 = k->e3 + s * k->e3s;
-  const double we = a1 + e * (2 * a2 + e * (3 * a3 + e * 4 * k->e4));
-  const double ws = e * (a1s + e * (a2s + e * k->e3s)), wes = a1s + e * (2 * a2s + e * 3 * k->e3s);
-  const double by_strain = we + wes * ds + k->coupling * twist;
-  const double by_twist = r * (ws + wes * de) + k->coupling * strain;
-  const double edge = k->max_bend * k->max_bend / (r * r), quartic = k->b4 * (r * r) * (r * r);
-  const double by_curvature2 = (0.5 * k->bend + 2 * quartic * smaller(curvature2, edge)) *
-                               SQRT(edge / larger(curvature2, edge));
-  const double pull = k->stretch * strain + by_strain, moment = of_twist + by_twist;
-  const double by_u = a * by_curvature2 * curvature2_slope + pull * length * (1.0 / 12);
-
-  const double sum_norm = SQRT(vec_norm2(sum)), stiff = 12.0 * k->shear_share * k->bend / a;
-  const Vec along = vec_scaled(1 / sum_norm, sum);
-  const double cos_psi = vec_dot(along, d);
-  const Vec bending = vec_sum(vec_scaled(by_u, vec_cross(i.t, j.t)), vec_scaled(moment / (2.0 - u), sum));
-  const Vec lean = vec_scaled(stiff / sum_norm, vec_difference(d, vec_scaled(cos_psi, along)));
-  BondAction out;
-  out.force_j = vec_difference(vec_scaled(stiff / length, vec_difference(along, vec_scaled(cos_psi, d))),
-                               vec_scaled(pull * arc, d));
-  out.torque_i = vec_difference(bending, vec_cross(lean, i.t));
-  out.torque_j = vec_difference(vec_scaled(-1, bending), vec_cross(lean, j.t));
-  return out;
 }
 
 // Forces and torques of each bond, computed once, with the bond damping of this rate (1/ps; BondDamping).
@@ -464,19 +356,19 @@ KERNEL bonds(OF_GROUP GLOBAL const double* motion, GLOBAL const int* kind, GLOBA
         GLOBAL const ElementType* type = &types[kind[i] & KIND_TYPE];
         const BodyFrame fi = frame_at(motion, stride, i), fj = frame_at(motion, stride, j);
         const Vec separation = vec_difference(vec_at(motion, 0, stride, j), vec_at(motion, 0, stride, i));
-        f = type->anharmonic ? anharmonic_bond(type, separation, fi, fj) : harmonic_bond(type, separation, fi, fj);
-        slips = vec_dot(fi.e1, fj.e1) + vec_dot(fi.e2, fj.e2) <= 0 ? 1 : 0;
+        const double sine = twist_sine(fi, fj), cosine = twist_cosine(fi, fj);
+        f = type->bond.anharmonic.used ? anharmonic_bond(&type->bond, type->shear_share, type->length, separation, fi, fj,
+                                                         angle_of(sine, cosine))
+                                       : harmonic_bond(&type->bond, type->shear_share, type->length, separation, fi, fj);
+        slips = cosine <= 0 ? 1 : 0;
         if (rate > 0) {
-          const Vec wi = vec_at(motion, 10, stride, i), wj = vec_at(motion, 10, stride, j);
-          const Vec arm = vec_scaled(0.5, separation), spin = vec_difference(wj, wi);
-          const Vec relative = vec_difference(vec_difference(vec_at(motion, 7, stride, j), vec_at(motion, 7, stride, i)),
-                                              vec_cross(vec_sum(wi, wj), arm));
-          const Vec force = vec_scaled(-0.5 * rate * type->mass, relative);
-          const Vec couple = vec_scaled(-0.5 * rate * type->inertia, spin), lever = vec_cross(force, arm);
-          f.force_j = vec_sum(f.force_j, force);
-          f.torque_i = vec_sum(f.torque_i, vec_difference(lever, couple));
-          f.torque_j = vec_sum(f.torque_j, vec_sum(lever, couple));
-          power = vec_dot(force, relative) + vec_dot(couple, spin);
+          const PairDamping d =
+              bond_damping(rate, type->mass, type->inertia, separation, vec_at(motion, 7, stride, i),
+                           vec_at(motion, 10, stride, i), vec_at(motion, 7, stride, j), vec_at(motion, 10, stride, j));
+          f.force_j = vec_sum(f.force_j, d.force_j);
+          f.torque_i = vec_sum(f.torque_i, d.torque_i);
+          f.torque_j = vec_sum(f.torque_j, d.torque_j);
+          power = d.power;
         }
       }
       vec_store(f.force_j, bond, 0, stride, i);

@@ -152,7 +152,7 @@ class OpenClDevice : public Device {
     std::ostringstream source;
     source << "#define NODES " << shape.nodes << "\n#define TYPES " << shape.types
            << "\n#define LOCAL_TYPES TYPES\n"
-           << kernel_dialect_text << kernel_types_text << kernel_text;
+           << forms_dialect_text << forms_text << kernel_dialect_text << kernel_types_text << kernel_text;
     const std::string written = source.str();
     const char* begin = written.c_str();
     const std::size_t length = written.size();

@@ -7,14 +7,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model/bond.hpp"
 #include "model/contract.hpp"
+#include "model/dialect.h"
 #include "sim/device/device.hpp"
 #include "sim/device/dialect.h"
-#include "sim/device/types.h"
 #include "sim/threads/for_each.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
+#include "sim/device/types.h"
 namespace {
 
 struct alignas(16) int4 {

@@ -1,4 +1,5 @@
-// Structures and numbers that the kernels of a device share with the program. C, for OpenCL and C++ alike.
+// Structures and numbers that the kernels of a device share with the program. C, for OpenCL and C++ alike. Before this
+// text: model/forms.h.
 #define GROUP 128  // work items of a group
 #define LANES 8    // work items that share an element in the contact
 // The table of the line law (sim/contact/line/radial_table.hpp).
@@ -18,13 +19,10 @@ enum { TOLD_SPEED2, TOLD_SPIN2, TOLD_MOVED, TOLD_TURN, TOLD_TURN_Z, TOLD_POWER, 
 enum { SUM_SPEEDS = TOLD, SUM_MOVED, SUMMARY };
 #define NO_ELEMENT 2147483647
 
-// One type of tube. The members have the names and units of TubeType, BondStiffness and Anharmonic.
+// The members have the names and units of TubeType; shear_share: of bonds of this length.
 typedef struct {
-  double mass, inertia, length;
-  double stretch, bend, twist, shear_share;
-  double radius, coupling, e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4;
-  double min_strain, max_strain, max_shear, max_bend;
-  int anharmonic;  // 0 or 1
+  double mass, inertia, length, shear_share;
+  BondStiffness bond;
 } ElementType;
 
 // Places of the nodes on an element of one type of tube, from its centre, in units of LineTables::unit.

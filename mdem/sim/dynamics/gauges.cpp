@@ -9,8 +9,6 @@
 namespace ropewalk {
 namespace {
 
-PlainVector plain(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Vector3 vector(PlainVector v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -71,8 +69,8 @@ void Gauges::add(const State& state, int element, const Vector3& force, const Ve
   if (end_of_[i] < 0) return;
   const auto end = static_cast<std::size_t>(end_of_[i]);
   Sum& sum = sums.of[end];
-  sum.force_time += plain(force);
-  sum.torque_time += plain(torque + (state.position[i] - centre_[end]).cross(force));
+  sum.force_time = vec_sum(sum.force_time, plain(force));
+  sum.torque_time = vec_sum(sum.torque_time, plain(torque + (state.position[i] - centre_[end]).cross(force)));
   sum.work += work;
 }
 

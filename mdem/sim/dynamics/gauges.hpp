@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "sim/dynamics/loads.hpp"
-#include "sim/state/plain_vector.hpp"
 
 namespace ropewalk {
 
@@ -37,7 +36,7 @@ class Gauges {
  public:
   // The sums: all that the future of a gauge depends on.
   struct Sum {
-    PlainVector force_time{}, torque_time{};  // since the last reading
+    forms::Vec force_time{}, torque_time{};  // since the last reading
     double turned = 0, work = 0;              // since the start
   };
   struct Sums {

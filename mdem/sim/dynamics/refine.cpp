@@ -82,7 +82,7 @@ int begin_of(const Topology& coarse, int tube, Splitting how) {
 
 void place_between(const Topology& coarse, int tube, const State& s, State& out) {
   const TubeType& type = coarse.type_of(tube);
-  const double share = type.bond.shear_share(type.element_length);
+  const double share = shear_share(type.bond, type.element_length);
   int at = begin_of(coarse, tube, Splitting::between);
   for (int i = coarse.tube_begin[tube]; i < coarse.tube_begin[tube + 1]; ++i) {
     set_pose(pose_of(s, i), at++, out);
@@ -94,7 +94,7 @@ void place_between(const Topology& coarse, int tube, const State& s, State& out)
 void place_halves(const Topology& coarse, int tube, const State& s, State& out) {
   const int from = coarse.tube_begin[tube], to = coarse.tube_begin[tube + 1];
   const TubeType& type = coarse.type_of(tube);
-  const double share = type.bond.shear_share(type.element_length);
+  const double share = shear_share(type.bond, type.element_length);
   if (to - from == 1) {
     const Pose p = pose_of(s, from);
     const Vector3 quarter = 0.25 * type.element_length * axis_of(p.turn);

@@ -14,7 +14,7 @@
 //   bend   t(u) = t_i turned by u theta towards t_j: a circular arc, x(u) = x_i + L u sinc(u theta/2) t(u/2)
 //   twist  u times that of the bond, about t(u)
 //   shear  sigma = r - (r.m) m, the part of r across the arc. Of it 1 - s is shear of the rod, the same all along;
-//          s (BondStiffness::shear_share) is due to a curvature that changes along the bond:
+//          s (shear_share() of model/bond.hpp) is due to a curvature that changes along the bond:
 //          x += sigma (u + s (3 u^2 - 2 u^3 - u)),   t turned by 6 s u (1 - u) sigma/L
 //
 // A straight, stretched, twisted or circular chain is carried over exactly, and so is the centre line where twist

@@ -3,7 +3,7 @@ namespace ropewalk {
 namespace ROPEWALK_UNIT {
 namespace {
 
-// frame_of() over plain numbers, which the compiler vectorises; element `origin` becomes frame 0.
+// Frames of the elements begin .. end - 1; element `origin` becomes frame 0.
 void frames_of(const QuaternionArray& q, std::ptrdiff_t origin, std::ptrdiff_t begin, std::ptrdiff_t end,
                FrameArray& out) {
   const double *qw = q.w.data() + origin, *qx = q.x.data() + origin, *qy = q.y.data() + origin,
@@ -13,20 +13,18 @@ void frames_of(const QuaternionArray& q, std::ptrdiff_t origin, std::ptrdiff_t b
          *tz = out.t.z.data();
 #pragma GCC ivdep
   for (std::ptrdiff_t i = begin - origin; i < end - origin; ++i) {
-    const double w = qw[i], x = qx[i], y = qy[i], z = qz[i];
-    ax[i] = 1 - 2 * (y * y + z * z), ay[i] = 2 * (x * y + w * z), az[i] = 2 * (x * z - w * y);
-    bx[i] = 2 * (x * y - w * z), by[i] = 1 - 2 * (x * x + z * z), bz[i] = 2 * (y * z + w * x);
-    tx[i] = 2 * (x * z + w * y), ty[i] = 2 * (y * z - w * x), tz[i] = 1 - 2 * (x * x + y * y);
+    const forms::BodyFrame f = forms::turn_frame({qw[i], qx[i], qy[i], qz[i]});
+    ax[i] = f.e1.x, ay[i] = f.e1.y, az[i] = f.e1.z;
+    bx[i] = f.e2.x, by[i] = f.e2.y, bz[i] = f.e2.z;
+    tx[i] = f.t.x, ty[i] = f.t.y, tz[i] = f.t.z;
   }
 }
 
 // Returns their energies; `slips` becomes negative where a bond does.
 template <bool anharmonic>
-__attribute__((always_inline)) inline BondEnergy<double> bond_forces(const TubeType& type,
-                                                                     const Vec3Array& position,
-                                                                     const FrameArray& frames,
-                                                                     const BondRange& bonds, BondArray& out,
-                                                                     double& slips) {
+__attribute__((always_inline)) inline BondEnergy bond_forces(const TubeType& type, const Vec3Array& position,
+                                                             const FrameArray& frames, const BondRange& bonds,
+                                                             BondArray& out, double& slips) {
   const std::ptrdiff_t begin = bonds.begin, from = bonds.from, to = bonds.to;
   const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
   const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
@@ -42,11 +40,13 @@ __attribute__((always_inline)) inline BondEnergy<double> bond_forces(const TubeT
 #pragma GCC ivdep
   for (std::ptrdiff_t i = from; i < to; ++i) {
     const std::ptrdiff_t j = i + 1;
-    const Frame<double, PlainVector> fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
-    const Frame<double, PlainVector> fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
-    const PlainVector separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
-    const BondForce<double, PlainVector> f =
-        anharmonic ? anharmonic_force(k, a, separation, fi, fj) : harmonic_force(k, a, separation, fi, fj);
+    const forms::BodyFrame fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
+    const forms::BodyFrame fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
+    const forms::Vec separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+    const double share = shear_share(k, a);
+    const forms::BondAction f =
+        anharmonic ? forms::anharmonic_bond(&k, share, a, separation, fi, fj, bond_twist_angle(fi, fj))
+                   : forms::harmonic_bond(&k, share, a, separation, fi, fj);
     fx[i] = f.force_j.x, fy[i] = f.force_j.y, fz[i] = f.force_j.z;
     ix[i] = f.torque_i.x, iy[i] = f.torque_i.y, iz[i] = f.torque_i.z;
     jx[i] = f.torque_j.x, jy[i] = f.torque_j.y, jz[i] = f.torque_j.z;
@@ -54,21 +54,21 @@ __attribute__((always_inline)) inline BondEnergy<double> bond_forces(const TubeT
     shear += f.energy.shear;
     bend += f.energy.bend;
     twist += f.energy.twist;
-    smallest = std::min(smallest, fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2));
+    smallest = std::min(smallest, forms::twist_cosine(fi, fj));
   }
   slips = smallest;
   return {stretch, shear, bend, twist};
 }
 
-__attribute__((flatten)) BondEnergy<double> harmonic_forces(const TubeType& type, const Vec3Array& position,
-                                                            const FrameArray& frames, const BondRange& bonds,
-                                                            BondArray& out, double& slips) {
+__attribute__((flatten)) BondEnergy harmonic_forces(const TubeType& type, const Vec3Array& position,
+                                                    const FrameArray& frames, const BondRange& bonds,
+                                                    BondArray& out, double& slips) {
   return bond_forces<false>(type, position, frames, bonds, out, slips);
 }
 
-__attribute__((flatten)) BondEnergy<double> anharmonic_forces(const TubeType& type, const Vec3Array& position,
-                                                              const FrameArray& frames, const BondRange& bonds,
-                                                              BondArray& out, double& slips) {
+__attribute__((flatten)) BondEnergy anharmonic_forces(const TubeType& type, const Vec3Array& position,
+                                                      const FrameArray& frames, const BondRange& bonds,
+                                                      BondArray& out, double& slips) {
   return bond_forces<true>(type, position, frames, bonds, out, slips);
 }
 
@@ -84,14 +84,13 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
   double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
   double power = 0;
-  const BondDamping law = damping;
-  const double mass = type.mass, inertia = type.inertia;
+  const double rate = damping.rate, mass = type.mass, inertia = type.inertia;
 #pragma GCC ivdep
   for (std::ptrdiff_t i = from; i < to; ++i) {
     const std::ptrdiff_t j = i + 1;
-    const PairDamping<PlainVector> d = law.force<PlainVector>(
-        mass, inertia, PlainVector{x[j] - x[i], y[j] - y[i], z[j] - z[i]}, PlainVector{vx[i], vy[i], vz[i]},
-        PlainVector{wx[i], wy[i], wz[i]}, PlainVector{vx[j], vy[j], vz[j]}, PlainVector{wx[j], wy[j], wz[j]});
+    const forms::PairDamping d =
+        forms::bond_damping(rate, mass, inertia, {x[j] - x[i], y[j] - y[i], z[j] - z[i]}, {vx[i], vy[i], vz[i]},
+                            {wx[i], wy[i], wz[i]}, {vx[j], vy[j], vz[j]}, {wx[j], wy[j], wz[j]});
     fx[i] += d.force_j.x, fy[i] += d.force_j.y, fz[i] += d.force_j.z;
     ix[i] += d.torque_i.x, iy[i] += d.torque_i.y, iz[i] += d.torque_i.z;
     jx[i] += d.torque_j.x, jy[i] += d.torque_j.y, jz[i] += d.torque_j.z;
@@ -100,10 +99,10 @@ double bond_damping(const TubeType& type, const BondDamping& damping, const Stat
   return power;
 }
 
-// Collects the action of `bonds` bonds of a tube on the elements from .. to - 1, numbered from the first bond's element:
-// bond i acts on the elements i and i + 1.
-void collect_bonds(const Column& on_i, double sign_i, const Column& on_j,
-                   std::ptrdiff_t bonds, std::ptrdiff_t from, std::ptrdiff_t to, double* out) {
+// Collects the action of `bonds` bonds of a tube on the elements from .. to - 1, numbered from the first bond's
+// element: bond i acts on the elements i and i + 1.
+void collect_bonds(const Column& on_i, double sign_i, const Column& on_j, std::ptrdiff_t bonds, std::ptrdiff_t from,
+                   std::ptrdiff_t to, double* out) {
   const double *a = on_i.data(), *b = on_j.data();
   if (from == 0) out[0] = bonds > 0 ? sign_i * a[0] : 0.0;
 #pragma omp simd

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "model/contract.hpp"
-#include "sim/state/plain_vector.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
@@ -32,7 +31,7 @@ BondSum whole_bonds(const BondInput& in, int tube, const BondRange& range, TubeB
       type.bond.anharmonic.used ? ROPEWALK_IN_USE(anharmonic_forces) : ROPEWALK_IN_USE(harmonic_forces);
   sum.energy = forces(type, in.state.position, work.frames, range, work.bonds, slips);
   for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
-    const Frame<double> fi = work.frames[static_cast<std::size_t>(i)],
+    const Frame fi = work.frames[static_cast<std::size_t>(i)],
                         fj = work.frames[static_cast<std::size_t>(i + 1)];
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }

@@ -39,7 +39,7 @@ struct FrameArray {
     e2.resize(n);
     t.resize(n);
   }
-  Frame<double> operator[](std::size_t i) const { return {e1[i], e2[i], t[i]}; }
+  Frame operator[](std::size_t i) const { return {e1[i], e2[i], t[i]}; }
 };
 
 // At i stands the bond from element i to i + 1.
@@ -67,7 +67,7 @@ struct TubeBonds {
 
 // Energy and power of some bonds.
 struct BondSum {
-  BondEnergy<double> energy;
+  BondEnergy energy;
   double power = 0;   // of their damping
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
 };

@@ -27,8 +27,8 @@ void contact_pair(TypePair types, const Interaction& in, const State& s, std::si
 void bond(const TubeType& type, const Interaction& in, const State& s, std::size_t i, Forces& out) {
   const std::size_t j = i + 1;
   const Vector3 separation = s.position[j] - s.position[i];
-  const Frame<double> fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[j]);
-  const BondForce<double> f = bond_energy_and_gradient(type.bond, type.element_length, separation, fi, fj);
+  const Frame fi = frame_of(s.orientation[i]), fj = frame_of(s.orientation[j]);
+  const BondForce f = bond_energy_and_gradient(type.bond, type.element_length, separation, fi, fj);
   out.energy.stretch += f.energy.stretch;
   out.energy.shear += f.energy.shear;
   out.energy.bend += f.energy.bend;

@@ -3,15 +3,6 @@ namespace ropewalk {
 namespace ROPEWALK_UNIT {
 namespace {
 
-// sin(h)/h and cos(h) of the square of h, up to the last bit for h below 0.25 and to 1e-12 below 0.5.
-inline double sine_over(double h2) {
-  return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 / 39916800))));
-}
-inline double cosine(double h2) {
-  return 1 + h2 * (-0.5 + h2 * (1.0 / 24 +
-                                h2 * (-1.0 / 720 + h2 * (1.0 / 40320 + h2 * (-1.0 / 3628800 + h2 / 479001600)))));
-}
-
 void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
                    std::ptrdiff_t end) {
   const double *fx = force.x.data(), *fy = force.y.data(), *fz = force.z.data();
@@ -36,20 +27,8 @@ void move_elements(State& s, double dt, std::ptrdiff_t begin, std::ptrdiff_t end
     x[i] += dt * vx[i];
     y[i] += dt * vy[i];
     z[i] += dt * vz[i];
-    // The rotation by w dt as a quaternion (c, a).
-    const double h2 = 0.25 * dt * dt * (wx[i] * wx[i] + wy[i] * wy[i] + wz[i] * wz[i]);
-    const double scale = 0.5 * dt * sine_over(h2), c = cosine(h2);
-    const double ax = scale * wx[i], ay = scale * wy[i], az = scale * wz[i];
-    const double bw = qw[i], bx = qx[i], by = qy[i], bz = qz[i];
-    const double rw = c * bw - ax * bx - ay * by - az * bz;
-    const double rx = c * bx + ax * bw + ay * bz - az * by;
-    const double ry = c * by + ay * bw + az * bx - ax * bz;
-    const double rz = c * bz + az * bw + ax * by - ay * bx;
-    const double unit = 1.5 - 0.5 * (rw * rw + rx * rx + ry * ry + rz * rz);  // one Newton step to unit norm
-    qw[i] = unit * rw;
-    qx[i] = unit * rx;
-    qy[i] = unit * ry;
-    qz[i] = unit * rz;
+    const forms::Turn q = forms::turned({wx[i], wy[i], wz[i]}, dt, {qw[i], qx[i], qy[i], qz[i]});
+    qw[i] = q.w, qx[i] = q.x, qy[i] = q.y, qz[i] = q.z;
   }
 }
 
@@ -84,9 +63,8 @@ Change largest_change(const State& state, const Vec3Array& position, const Vec3A
     const double s = std::max(-by.most, std::min(by.sine + by.slope * pz, by.most)), c = std::sqrt(1 - s * s);
     const double vx = x[i] - by.x, vy = y[i] - by.y;
     const double dx = vx - (c * px - s * py), dy = vy - (s * px + c * py), dz = z[i] - rz[i];
-    const double ax = 2 * (qx[i] * qz[i] + qw[i] * qy[i]) - (c * nx[i] - s * ny[i]),
-                 ay = 2 * (qy[i] * qz[i] - qw[i] * qx[i]) - (s * nx[i] + c * ny[i]),
-                 az = 1 - 2 * (qx[i] * qx[i] + qy[i] * qy[i]) - nz[i];
+    const forms::Vec n = forms::turn_axis({qw[i], qx[i], qy[i], qz[i]});
+    const double ax = n.x - (c * nx[i] - s * ny[i]), ay = n.y - (s * nx[i] + c * ny[i]), az = n.z - nz[i];
     const double turn = std::sqrt(ax * ax + ay * ay + az * az);
     const double d = std::sqrt(dx * dx + dy * dy + dz * dz) + lever * turn;
     const double product = px * vy - py * vx;

@@ -201,15 +201,14 @@ struct State {
   std::size_t size() const { return position.size(); }
 };
 
-inline Frame<double> frame_of(const Quaternion& q) {
-  const Eigen::Matrix3d r = q.toRotationMatrix();
-  return {r.col(0), r.col(1), r.col(2)};
+inline forms::Turn plain(const Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+inline Frame frame_of(const Quaternion& q) {
+  const forms::BodyFrame f = forms::turn_frame(plain(q));
+  return {vector(f.e1), vector(f.e2), vector(f.t)};
 }
 
 // The tube axis alone.
-inline Vector3 axis_of(const Quaternion& q) {
-  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
-          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
-}
+inline Vector3 axis_of(const Quaternion& q) { return vector(forms::turn_axis(plain(q))); }
 
 }  // namespace ropewalk

@@ -11,12 +11,12 @@ namespace ropewalk {
 // against the natural one, curvature (1/nm).
 inline double chain_energy(const BondStiffness& bond, double element, double strain, double twist,
                            double curvature) {
-  const Frame<double> i = frame_of(Quaternion::Identity());
+  const Frame i = frame_of(Quaternion::Identity());
   const double turn = curvature * element;
   const Quaternion bent(Eigen::AngleAxisd(turn, Vector3::UnitY()));
-  const Frame<double> j = frame_of(bent * Quaternion(Eigen::AngleAxisd(twist * element, Vector3::UnitZ())));
+  const Frame j = frame_of(bent * Quaternion(Eigen::AngleAxisd(twist * element, Vector3::UnitZ())));
   const Vector3 chord(std::sin(0.5 * turn), 0, std::cos(0.5 * turn));
-  return bond_energy<double>(bond, element, element * (1 + strain) * chord, i, j).total() / element;
+  return bond_energy(bond, element, element * (1 + strain) * chord, i, j).total() / element;
 }
 
 }  // namespace ropewalk

@@ -33,7 +33,7 @@ double energy(const BondPose& p, const BondStiffness& k = test::published_bond()
   return bond_energy(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj)).total();
 }
 
-BondForce<double> force(const BondPose& p, const BondStiffness& k = test::published_bond()) {
+BondForce force(const BondPose& p, const BondStiffness& k = test::published_bond()) {
   return bond_energy_and_gradient(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj));
 }
 
@@ -54,7 +54,7 @@ TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
   Random random(3);
   for (int n = 0; n < 3000; ++n) {
     const BondPose p = random_pose(random, n % 2 ? 0.2 : 2.0);
-    const BondForce<double> f = force(p, k);
+    const BondForce f = force(p, k);
     // The stiffness of the anharmonic bond jumps at the edges of its window.
     const bool kinks = GetParam() == Form::anharmonic;
     const double h = kinks ? 1e-6 : 1e-3,
@@ -84,7 +84,7 @@ TEST_P(BondForms, NetTorqueVanishes) {
   Random random(4);
   for (int n = 0; n < 1000; ++n) {
     const BondPose p = random_pose(random, 1.5);
-    const BondForce<double> f = force(p, k);
+    const BondForce f = force(p, k);
     ASSERT_LT((f.torque_i + f.torque_j + p.separation.cross(f.force_j)).norm(),
               1e-12 * (f.torque_i.norm() + f.torque_j.norm() + 10 * f.force_j.norm() + 1e4));
   }
@@ -113,7 +113,7 @@ TEST(AnharmonicBond, EnergyPerLengthIsThatOfTheRod) {
     const double turn = kappa * a, chord = turn > 0 ? 2 / kappa * std::sin(0.5 * turn) : a;
     const Quaternion half = test::turn(Vector3::UnitY(), 0.5 * turn);
     const Quaternion i = half.conjugate(), j = half * test::turn(Vector3::UnitZ(), t * a);
-    return bond_energy<double>(k, a, Vector3(0, 0, (1 + e) * chord), frame_of(i), frame_of(j)).total() / a;
+    return bond_energy(k, a, Vector3(0, 0, (1 + e) * chord), frame_of(i), frame_of(j)).total() / a;
   };
   const auto rod = [&](double e, double t, double kappa) {
     const double s = h.radius * t, b = h.radius * kappa;
@@ -135,14 +135,14 @@ TEST(AnharmonicBond, EnergyPerLengthIsThatOfTheRod) {
 // Beyond the window the energy still rises, with continuous forces.
 TEST(AnharmonicBond, GoesOnBeyondItsWindow) {
   const BondStiffness k = test::anharmonic_bond();
-  const Frame<double> rest = frame_of(Quaternion::Identity());
+  const Frame rest = frame_of(Quaternion::Identity());
   const double a = 1.36;
   const auto stretched = [&](double e) {
-    return bond_energy_and_gradient<double>(k, a, Vector3(0, 0, a * (1 + e)), rest, rest);
+    return bond_energy_and_gradient(k, a, Vector3(0, 0, a * (1 + e)), rest, rest);
   };
   const auto bent = [&](double b) {
     const Quaternion half = test::turn(Vector3::UnitY(), 0.5 * a * b / k.anharmonic.radius);
-    return bond_energy_and_gradient<double>(k, a, Vector3(0, 0, a), frame_of(half.conjugate()), frame_of(half));
+    return bond_energy_and_gradient(k, a, Vector3(0, 0, a), frame_of(half.conjugate()), frame_of(half));
   };
   double last_pull = 0, last_moment = 0;
   for (double x = 0.005; x < 0.6; x += 0.005) {
@@ -164,7 +164,7 @@ TEST(Bond, PartsAddUpToTheVectorModel) {
   const double b1 = k.stretch / a, b2 = 12 * k.bend / a, b3 = -2 * k.bend / a - k.twist / (2 * a), b4 = k.twist / a;
   for (int n = 0; n < 500; ++n) {
     const BondPose p = random_pose(random, 2.0);
-    const Frame<double> i = frame_of(p.qi), j = frame_of(p.qj);
+    const Frame i = frame_of(p.qi), j = frame_of(p.qj);
     const double length = p.separation.norm();
     const double published = 0.5 * b1 * (length - a) * (length - a) -
                              0.5 * b2 * (i.t + j.t).dot(p.separation) / length - b3 * i.t.dot(j.t) -
@@ -178,20 +178,20 @@ TEST(Bond, SmallDeformationsAreABeam) {
   const BondStiffness k = test::published_bond();
   const double a = test::element_length;
   const Vector3 z(0, 0, a);
-  const Frame<double> rest = frame_of(Quaternion::Identity());
+  const Frame rest = frame_of(Quaternion::Identity());
   const double small = 1e-3;
   const auto turned = [&](const Vector3& axis, double angle) { return frame_of(test::turn(axis, angle)); };
   const Vector3 x = Vector3::UnitX();
 
-  EXPECT_NEAR(bond_energy<double>(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small,
+  EXPECT_NEAR(bond_energy(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small,
               1e-9);
-  const auto bent = bond_energy<double>(k, a, z, turned(x, -small / 2), turned(x, small / 2));
+  const auto bent = bond_energy(k, a, z, turned(x, -small / 2), turned(x, small / 2));
   EXPECT_NEAR(bent.bend / (0.5 * k.bend / a * small * small), 1, 1e-6);
   EXPECT_NEAR(bent.shear, 0, 1e-9);
-  const auto sheared = bond_energy<double>(k, a, z, turned(x, small), turned(x, small));
+  const auto sheared = bond_energy(k, a, z, turned(x, small), turned(x, small));
   EXPECT_NEAR(sheared.shear / (6 * k.bend / a * small * small), 1, 1e-6);
   EXPECT_NEAR(sheared.bend, 0, 1e-12);
-  const auto twisted = bond_energy<double>(k, a, z, rest, turned(Vector3::UnitZ(), small));
+  const auto twisted = bond_energy(k, a, z, rest, turned(Vector3::UnitZ(), small));
   EXPECT_NEAR(twisted.twist / (0.5 * k.twist / a * small * small), 1, 1e-6);
   EXPECT_NEAR(twisted.bend + twisted.shear + twisted.stretch, 0, 1e-12);
 }
@@ -200,10 +200,10 @@ TEST(Bond, SmallDeformationsAreABeam) {
 TEST(Bond, TwistSoftensAsOneMinusCosine) {
   const BondStiffness k = test::published_bond();
   const double a = test::element_length;
-  const Frame<double> rest = frame_of(Quaternion::Identity());
+  const Frame rest = frame_of(Quaternion::Identity());
   for (const auto& [phi, deficit] : {std::pair{0.1, 0.00083}, std::pair{1.0, 0.0806}}) {
-    const Frame<double> j = frame_of(test::turn(Vector3::UnitZ(), phi));
-    const double e = bond_energy<double>(k, a, {0, 0, a}, rest, j).twist;
+    const Frame j = frame_of(test::turn(Vector3::UnitZ(), phi));
+    const double e = bond_energy(k, a, {0, 0, a}, rest, j).twist;
     EXPECT_NEAR(1 - e / (0.5 * k.twist / a * phi * phi), deficit, 1e-3 * phi);
     EXPECT_NEAR(bond_twist_angle(rest, j), phi, 1e-12);
     EXPECT_NEAR(bond_twist_angle(j, rest), -phi, 1e-12);

@@ -37,7 +37,7 @@ TEST(Limits, BendAndTwistAreWhereTheBondIsOnePercentOffTheRod) {
   const Limits limits;
   const double a = test::element_length;
   const auto off = [&](const Quaternion& q, double rod) {
-    const BondEnergy<double> e =
+    const BondEnergy e =
         bond_energy(published_bond(), a, Vector3(0, 0, a), frame_of(Quaternion::Identity()), frame_of(q));
     return 1 - (e.bend + e.twist) / rod;
   };

@@ -36,8 +36,8 @@ Loop closed_loop(const ParameterSet& set, double amplitude) {
     bond.advance(separation, separation, {}, {Vector3::Zero(), turn.angle() * turn.axis()});
     at = next;
   }
-  const Frame<double> still = frame_of(Quaternion::Identity());
-  return {bond.energy(separation), bond_energy<double>(set.bond, a, separation, still, frame_of(at)).total()};
+  const Frame still = frame_of(Quaternion::Identity());
+  return {bond.energy(separation), bond_energy(set.bond, a, separation, still, frame_of(at)).total()};
 }
 
 CaseResult run(const CaseContext& context) {

@@ -45,8 +45,8 @@ Quaternion small_turn(const Vector3& angles) {
 Eigen::VectorXd chain_forces(const BondStiffness& bond, double element_length, const State& state) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * state.size()));
   for (std::size_t i = 0; i + 1 < state.size(); ++i) {
-    const BondForce<double> f =
-        bond_energy_and_gradient<double>(bond, element_length, state.position[i + 1] - state.position[i],
+    const BondForce f =
+        bond_energy_and_gradient(bond, element_length, state.position[i + 1] - state.position[i],
                                          frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
     const auto at = static_cast<Eigen::Index>(6 * i);
     out.segment<3>(at) -= f.force_j;

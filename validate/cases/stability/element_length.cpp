@@ -83,7 +83,7 @@ CaseFigure bending_figure(const CaseContext& context) {
       angle.push_back(bend_of_bond(model, m));
       error.push_back(100 * (m * model.bond.bend / oracle.bond.bend / angle.back() - 1));
     }
-    const double share = oracle.bond.shear_share(oracle.element_length);
+    const double share = shear_share(oracle.bond, oracle.element_length);
     figure.chart.lines.push_back(theory_curve(fmt::format("(3 s/8 - 1/6) d^2, {}", oracle.name), 0, angle.back(),
                                               colour,
                                               [&](double d) { return 100 * (0.375 * share - 1.0 / 6) * d * d; }));

@@ -39,7 +39,7 @@ CaseResult run(const CaseContext& context) {
     const State& state = s.state();
     for (int e = 0; e < bonds; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      const Frame<double> f = frame_of(state.orientation[i]), g = frame_of(state.orientation[i + 1]);
+      const Frame f = frame_of(state.orientation[i]), g = frame_of(state.orientation[i + 1]);
       bend2 += (g.t - f.t).squaredNorm();
       bent[i] += (g.t - f.t).squaredNorm();
       twist2 += std::pow(bond_twist_angle(f, g), 2);

@@ -38,7 +38,7 @@ class TwistedRing {
   // Force and torque on element 0.
   Vector6 load(const Moves& moves) const {
     std::array<Vector3, 3> at;
-    std::array<Frame<double>, 3> frame;
+    std::array<Frame, 3> frame;
     for (int k = -1; k <= 1; ++k) {
       const auto e = static_cast<std::size_t>(k + 1);
       const Quaternion around = turn_about(Vector3::UnitZ(), k * step_);
@@ -47,10 +47,10 @@ class TwistedRing {
           frame_of(around * small_turn(moves[e].tail<3>()) * axis_ * turn_about(Vector3::UnitZ(), k * twist_));
     }
     const auto bond = [&](std::size_t i) {
-      return bond_energy_and_gradient<double>(set_.bond, set_.element_length, at[i + 1] - at[i], frame[i],
+      return bond_energy_and_gradient(set_.bond, set_.element_length, at[i + 1] - at[i], frame[i],
                                               frame[i + 1]);
     };
-    const BondForce<double> before = bond(0), after = bond(1);
+    const BondForce before = bond(0), after = bond(1);
     Vector6 out;
     out << before.force_j - after.force_j, before.torque_j + after.torque_i;
     return out;

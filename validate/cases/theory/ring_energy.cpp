@@ -14,7 +14,7 @@ double ring_energy(const ParameterSet& set, int elements, double circumference) 
   const double radius = 0.5 * a / std::sin(0.5 * step);
   const auto frame = [&](int k) { return frame_of(turn_about(Vector3::UnitX(), -k * step)); };
   const auto at = [&](int k) { return Vector3(0, radius * (1 - std::cos(k * step)), radius * std::sin(k * step)); };
-  return elements * bond_energy<double>(set.bond, a, at(1) - at(0), frame(0), frame(1)).total();
+  return elements * bond_energy(set.bond, a, at(1) - at(0), frame(0), frame(1)).total();
 }
 
 CaseResult run(const CaseContext& context) {
@@ -27,7 +27,7 @@ CaseResult run(const CaseContext& context) {
   // The energy of a bond bent by delta: (1 - cos delta) + s (12 (1 - cos(delta/2)) - 3 (1 - cos delta)), to
   // delta^4.
   const auto leading = [&](double n) {
-    return (3 * oracle.bond.shear_share(circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
+    return (3 * shear_share(oracle.bond, circumference / n) / 16 - 1.0 / 12) * turn * turn / (n * n);
   };
   result.check_relative("energy of 50 elements", ring_energy(model, 50, circumference), expected, 2e-3, "eV",
                         "chords and cosines of bends of 0.126 rad: -0.09 %");

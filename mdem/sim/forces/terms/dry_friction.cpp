@@ -188,7 +188,7 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   std::size_t bytes() const override {
-    return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame<double>);
+    return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame);
   }
 
  private:
@@ -266,7 +266,7 @@ class DryFrictionTerm : public ForceTerm {
 
   Pair pair_of(int first, int second, const State& state) const {
     const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-    const Frame<double>&at_a = frames_[a], &at_b = frames_[b];
+    const Frame&at_a = frames_[a], &at_b = frames_[b];
     Pair p;
     p.w = state.position[b] - state.position[a];
     p.cosine = at_a.t.dot(at_b.t);
@@ -280,7 +280,7 @@ class DryFrictionTerm : public ForceTerm {
     return p;
   }
   // Of arm alpha; `direction`: of w in the frame.
-  static Vector3 turning_part(const Frame<double>& frame, const Vector3& w, double arm, Direction& direction) {
+  static Vector3 turning_part(const Frame& frame, const Vector3& w, double arm, Direction& direction) {
     const double x = frame.e1.dot(w), y = frame.e2.dot(w), inverse = 1 / std::sqrt(std::max(x * x + y * y, 1e-12));
     direction = {x * inverse, y * inverse};
     const double by = arm * inverse;
@@ -474,7 +474,7 @@ class DryFrictionTerm : public ForceTerm {
   std::vector<Element> elements_;
   TermMemory remembered_;  // until the next list
   std::vector<Contact> contacts_;
-  std::vector<Frame<double>> frames_;  // of the elements, in the state of the evaluation
+  std::vector<Frame> frames_;  // of the elements, in the state of the evaluation
   std::vector<Now> now_;               // of the contacts, likewise
   Rows of_first_, of_second_;          // contacts by a and by b
 };

@@ -22,7 +22,7 @@ Topology one_tube(int elements, double shear = 0) {
   return t;
 }
 
-BondEnergy<double> bonds_of(const Topology& topology, const State& s) {
+BondEnergy bonds_of(const Topology& topology, const State& s) {
   Forces f(s.size());
   compute_reference(topology, Interaction{}, s, f);
   return {f.energy.stretch, f.energy.shear, f.energy.bend, f.energy.twist};
@@ -83,7 +83,7 @@ TEST(Halved, ElementsBetweenLeaveTheOthersInPlace) {
     EXPECT_LT((f.velocity[i] - velocity - spin.cross(Vector3(f.position[i]))).norm(), 1e-9) << i;
     EXPECT_LT((f.angular_velocity[i] - spin).norm(), 1e-9) << i;
   }
-  const BondEnergy<double> energy = bonds_of(fine, f);
+  const BondEnergy energy = bonds_of(fine, f);
   const BondStiffness& k = fine.types[0].bond;
   EXPECT_NEAR(energy.twist, 14 * 2 * k.twist / element_length * (1 - std::cos(0.5 * phi)), 1e-8);
   EXPECT_NEAR(energy.stretch, 14 * 0.25 * k.stretch * element_length * 1e-4, 1e-8);
@@ -112,7 +112,7 @@ TEST(Halved, StraightTwistedStretchedChainIsExact) {
   EXPECT_NEAR(roll, (2 * n - 1) * phi / 2, 1e-10) << "39 half bonds";
   const Quaternion middle = along(axis, 0.25 * phi);
   EXPECT_LT(f.orientation[1].angularDistance(middle), 1e-7) << "the roll is where it was";
-  const BondEnergy<double> energy = bonds_of(fine, f);
+  const BondEnergy energy = bonds_of(fine, f);
   const BondStiffness& k = fine.types[0].bond;
   EXPECT_NEAR(energy.twist, (2 * n - 1) * 2 * k.twist / element_length * (1 - std::cos(0.5 * phi)), 1e-8);
   EXPECT_NEAR(energy.stretch, (2 * n - 1) * 0.25 * k.stretch * element_length * strain * strain, 1e-8);
@@ -143,7 +143,7 @@ TEST(Halved, RingStaysOnItsCircleWhateverItsTwist) {
       EXPECT_LT((f.position[i] - radius * (q * -Vector3::UnitX())).norm(), 1e-11) << i;
       EXPECT_LT((axis_of(f.orientation[i]) - q * Vector3::UnitZ()).norm(), 1e-12) << i;
     }
-    const BondEnergy<double> energy = bonds_of(halved(coarse), f);
+    const BondEnergy energy = bonds_of(halved(coarse), f);
     const BondStiffness& k = coarse.types[0].bond;
     const double rod = 0.5 * k.bend * angle * angle / element_length * (n - 0.5);
     EXPECT_NEAR(energy.bend / rod, 1 - angle * angle / 48, 1e-5) << "1 - cos of the half angle";
