@@ -13,6 +13,7 @@ ELSEWHERE = {
     "model/anharmonic": "unit/model/bond_test.cpp",
     "model/damping": "unit/forces_test.cpp",
     "model/error": "unit/io_test.cpp",
+    "model/forms": "unit/model/bond_test.cpp",
     "model/parameters": "unit/io/parameters_toml_test.cpp",
     "model/segments": "unit/sim/contact/line/radial_table_test.cpp",
     "model/units": "unit/model/tube_test.cpp",
