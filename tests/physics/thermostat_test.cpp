@@ -255,7 +255,8 @@ TEST(Langevin, NoiseIsAFunctionOfSeedAndStep) {
   const auto after = [&](std::uint64_t seed, std::int64_t step) {
     State s = chain.state;
     s.step = step;
-    LangevinThermostat(Schedule::always(room), 1, seed).apply(chain.topology, 0.01, s);
+    std::vector<double> none;
+    LangevinThermostat(Schedule::always(room), 1, seed).apply(chain.topology, 0.01, s, none);
     return s;
   };
   const State a = after(1, 7), same = after(1, 7), seed = after(2, 7), step = after(1, 8);

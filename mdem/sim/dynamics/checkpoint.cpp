@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM15";
+constexpr char magic[8] = "MDEM16";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -113,6 +113,7 @@ void Simulation::visit_checkpoint(Archive& archive, Self& self, List& list) {
   archive(s.step);
   archive(self.account_);
   archive(self.gauges_.sums);
+  archive(self.thermostat_variables_);
   archive(self.list_age_);
   archive(list.memory);
   archive(list.skin);
@@ -182,6 +183,7 @@ bool Simulation::could_go_on(double step_of_scene) const {
               s.step >= 0 && s.step < most_steps && list_age_ >= 0 && list_age_ < most_steps &&
               could_be(relaxation_, s.step, 1e3 * step_of_scene) && rest_.step <= s.step && rest_.saddles >= 0 && rest_.falls >= 0 &&
               all_within(std::array{s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
+  fine = fine && all_within(thermostat_variables_);
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
     fine = fine && all_xyz_within(*v);
   for (std::size_t i = 0; fine && i < s.size(); ++i) fine = std::fabs(s.orientation[i].norm() - 1) < 1e-3;
@@ -223,7 +225,11 @@ void Simulation::restore(const std::string& bytes) {
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
   const double step_of_scene = time_step_;
+  const std::size_t variables = thermostat_variables_.size();
   visit_checkpoint(read, *this, list);
+  if (thermostat_variables_.size() != variables)
+    throw std::runtime_error("the checkpoint holds " + std::to_string(thermostat_variables_.size()) +
+                             " internal variables of a thermostat, that of the scene has " + std::to_string(variables));
   if (!read.bytes.empty()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
   if (!could_go_on(step_of_scene) || !could_be(list))
     throw std::runtime_error(

@@ -49,7 +49,7 @@ void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first,
 
 }  // namespace
 
-void LangevinThermostat::apply(const Topology& topology, double dt, State& state) const {
+void LangevinThermostat::apply(const Topology& topology, double dt, State& state, std::vector<double>&) const {
   ROPEWALK_EXPECTS(dt > 0 && friction_ >= 0 && static_cast<int>(state.size()) == topology.elements());
   const double keep = std::exp(-friction_ * dt);
   const double energy =

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "sim/dynamics/thermostat.hpp"
 
@@ -22,7 +23,7 @@ class LangevinThermostat : public Thermostat {
  public:
   LangevinThermostat(Schedule temperature, double friction, std::uint64_t seed)
       : temperature_(std::move(temperature)), friction_(friction), seed_(seed) {}
-  void apply(const Topology& topology, double dt, State& state) const override;
+  void apply(const Topology& topology, double dt, State& state, std::vector<double>& variables) const override;
 
  private:
   Schedule temperature_;

@@ -77,6 +77,7 @@ Simulation::Simulation(Topology topology, Interaction interaction, LoadsAndConst
       forces_(state_.size()) {
   ROPEWALK_EXPECTS(static_cast<int>(state_.size()) == topology_.elements() && time_step_ > 0 && skin >= 0);
   refuse_places(state_);
+  if (stepping_.thermostat) thermostat_variables_ = stepping_.thermostat->initial_variables();
   list_.build(topology_, state_);
   compute();
   constrain(topology_, loads_, state_.time, 0.0, state_);
@@ -194,7 +195,7 @@ void Simulation::refuse_blow_up(const MotionBound& bound) const {
 // Constrained components take no part: they are as before afterwards.
 void Simulation::exchange_heat(double dt) {
   const double before = kinetic_energy(topology_, state_);
-  stepping_.thermostat->apply(topology_, dt, state_);
+  stepping_.thermostat->apply(topology_, dt, state_, thermostat_variables_);
   constrain(topology_, loads_, state_.time, 0.0, state_);
   account_.heat += kinetic_energy(topology_, state_) - before;
 }
@@ -285,6 +286,9 @@ EndReadings Simulation::read_gauges() {
 void Simulation::use_thermostat(std::shared_ptr<const Thermostat> thermostat) {
   if (device_.stepper && thermostat) throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
   stepping_.thermostat = std::move(thermostat);
+  std::vector<double> variables;
+  if (stepping_.thermostat) variables = stepping_.thermostat->initial_variables();
+  if (variables.size() != thermostat_variables_.size()) thermostat_variables_ = std::move(variables);
 }
 
 void Simulation::remember(const std::vector<double>& memory) {

@@ -88,7 +88,8 @@ class Simulation {
   // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their work
   // there counts. The gauges stay on their elements.
   void use_loads(LoadsAndConstraints loads);
-  // From the next step on; none: no bath. Its heat so far stays in the account.
+  // From the next step on; none: no bath. Its heat so far stays in the account. Its internal variables keep their
+  // values where the new thermostat has as many as the old one, as where the same one gets another temperature.
   void use_thermostat(std::shared_ptr<const Thermostat> thermostat);
   // A device moves the elements that no load acts on, from the next step on. open_device() knows the names of devices. The
   // simulation itself still computes the energies, when a caller asks for them. Throws std::invalid_argument where there
@@ -123,6 +124,8 @@ class Simulation {
     account_ = account;
   }
   void inherit_from(const Gauges::Sums& sums) { gauges_.sums = sums; }
+  // The internal variables of the thermostat; empty where it has none.
+  const std::vector<double>& thermostat_variables() const { return thermostat_variables_; }
   // What each of the interaction's terms has done since the start.
   std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }
   // The tubes as they are now: cut where they have broken.
@@ -191,6 +194,7 @@ class Simulation {
   double time_step_ = 0;
   int divided_ = 1;
   Stepping stepping_;
+  std::vector<double> thermostat_variables_;
   std::vector<int> loaded_;                  // elements
   std::vector<ConstraintImpulse> impulses_;  // of the last kick
   std::vector<double> removed_;              // likewise, by terms in the kick, from each part

@@ -21,11 +21,14 @@ struct ThermostatOptions {
 class Thermostat {
  public:
   virtual ~Thermostat() = default;
-  // Changes velocities and angular velocities as the bath does during dt (ps). The simulation calls this function
-  // once in each step, restores the constrained components afterwards and books the change of the kinetic
-  // energy as heat. The result must depend on the arguments alone, state.step and state.part included, and not on
-  // the number of threads: a resumed run then goes on with the same bits.
-  virtual void apply(const Topology& topology, double dt, State& state) const = 0;
+  // The internal variables of this thermostat at the start, such as the velocities of a Nosé-Hoover chain; empty: it
+  // has none. The simulation keeps their values and writes them to checkpoints.
+  virtual std::vector<double> initial_variables() const { return {}; }
+  // Changes velocities and angular velocities, and the internal variables, as the bath does during dt (ps). The
+  // simulation calls this function once in each step, restores the constrained components afterwards and books the
+  // change of the kinetic energy as heat. The result must depend on the arguments alone, state.step and state.part
+  // included, and not on the number of threads: a resumed run then continues with the same bits.
+  virtual void apply(const Topology& topology, double dt, State& state, std::vector<double>& variables) const = 0;
 };
 
 struct ThermostatKind {

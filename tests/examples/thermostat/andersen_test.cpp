@@ -21,7 +21,7 @@ class AndersenThermostat : public Thermostat {
   AndersenThermostat(double temperature, double rate, std::uint64_t seed)
       : kT_(units::boltzmann * temperature), rate_(rate), seed_(seed) {}
 
-  void apply(const Topology& topology, double dt, State& state) const override {
+  void apply(const Topology& topology, double dt, State& state, std::vector<double>&) const override {
     const double probability = -std::expm1(-rate_ * dt);
     for (std::size_t i = 0; i < state.size(); ++i) {
       const auto bits = random_bits(state, i, 0);
