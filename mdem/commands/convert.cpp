@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "io/draft.hpp"
@@ -39,18 +40,19 @@ class FramesOutput : public Output {
 // A PVD file and a folder of its name with the frames, which stand beside it until all are whole.
 class ParaviewOutput : public Output {
  public:
-  ParaviewOutput(const fs::path& pvd, bool force)
-      : pvd_(pvd),
-        folder_(fs::path(pvd).replace_extension("")),
-        drafts_(pvd.has_parent_path() ? pvd.parent_path().string() : ".") {
+  ParaviewOutput(const fs::path& pvd, bool force) : pvd_(pvd), folder_(fs::path(pvd).replace_extension("")) {
     std::error_code error;
     refuse_strange(folder_.string(), true);
     if (fs::exists(folder_, error) && !fs::is_empty(folder_, error))
       refuse_existing(folder_.string(), "FILE", force);
+    const fs::path place = pvd.has_parent_path() ? pvd.parent_path() : ".";
+    fs::create_directories(place, error);
+    if (error) throw file_error(place.string(), "cannot be made", error.value());
+    drafts_.emplace(place.string());
   }
   void add(const Topology& topology, const StoredFrame& f) override {
     const std::string name = fmt::format("frame-{:09d}.vtp", f.state.step);
-    write_file_atomically(drafts_.file(name), vtp_frame(topology, f.state, f.colours));
+    write_file_atomically(drafts_->file(name), vtp_frame(topology, f.state, f.colours));
     names_.push_back(name);
     entries_.push_back({f.state.time, (folder_.filename() / name).string()});
   }
@@ -61,13 +63,13 @@ class ParaviewOutput : public Output {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) throw file_error(folder_.string(), "cannot be made", error.value());
-    for (const std::string& name : names_) rename_whole(drafts_.file(name), (folder_ / name).string());
+    for (const std::string& name : names_) rename_whole(drafts_->file(name), (folder_ / name).string());
     pvd.replace();
   }
 
  private:
   fs::path pvd_, folder_;
-  TemporaryFolder drafts_;
+  std::optional<TemporaryFolder> drafts_;
   std::vector<std::string> names_;
   std::vector<PvdEntry> entries_;
 };
