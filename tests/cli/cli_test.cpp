@@ -16,6 +16,7 @@
 #include "cli/support.hpp"
 #include "io/log.hpp"
 #include "outputs_page.hpp"
+#include "signals.hpp"
 
 namespace fs = std::filesystem;
 
@@ -830,6 +831,7 @@ TEST_F(Cli, DamagedCheckpointIsRefused) {
 }
 
 TEST_F(Cli, SignalsWriteACheckpoint) {
+  const ropewalk::test::SignalsOfATerminal signals;
   for (const auto& [name, number] : {std::pair{"TERM", 15}, std::pair{"INT", 2}}) {
     small_rope("s.toml", "duration_ps = 100000\n");
     const std::string out = std::string("d") + name;

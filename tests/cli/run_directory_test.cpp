@@ -8,6 +8,7 @@
 
 #include "cli/support.hpp"
 #include "io/log.hpp"
+#include "signals.hpp"
 
 namespace ropewalk::test {
 namespace {
@@ -29,6 +30,7 @@ class RunDirectoryOf : public Cli {
   // Commands of a shell with a run in the background, whose id is in $pid once it is at work.
   Outcome beside_a_run(const std::string& arguments, const std::string& commands,
                        const std::string& before = "") const {
+    const SignalsOfATerminal signals;
     spit(dir / "script.sh", fmt::format("{4}cd '{0}'\n'{1}' {2} > run.txt 2>&1 &\npid=$!\n"
                                         "for k in $(seq 600); do [ -e d/limits.json ] && break; sleep 0.05; done\n"
                                         "sleep 0.1\n{3}\n",

@@ -160,8 +160,9 @@ TEST_F(Surroundings, TemporaryPlacesOfOthersAreNeitherTakenNorHarmed) {
       if (entry.path().filename().string().find(".part-") != std::string::npos) fs::remove(entry.path());
   }
   // A place that cannot be used is said to be so.
-  const Outcome o = run("sweep w.toml --dry-run", "TMPDIR=/nonexistent");
-  EXPECT_THAT(o.err, HasSubstr("/nonexistent")) << o.err;
+  const std::string nowhere = (dir / "nowhere").string();
+  const Outcome o = run("sweep w.toml --dry-run", "TMPDIR=" + nowhere);
+  EXPECT_THAT(o.err, HasSubstr(nowhere)) << o.err;
 }
 
 TEST_F(Surroundings, AFolderBesideAMovieStays) {

@@ -271,7 +271,7 @@ TEST_F(View, WrongOptionsAreOneLine) {
     EXPECT_EQ(o.code, 2) << line;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << line << "\n" << o.err;
   }
-  const Outcome o = run("view d --movie m.webm", "PATH=/nonexistent");
+  const Outcome o = run("view d --movie m.webm", "PATH=./nowhere");
   EXPECT_EQ(o.code, 2);
   EXPECT_EQ(o.err, "ropewalk: --movie: needs ffmpeg, which is missing or does not work; install ffmpeg\n");
   EXPECT_FALSE(fs::exists(dir / "m.webm.frames"));

@@ -177,7 +177,7 @@ def pages_of_validations(program, folder):
                        stdout=subprocess.DEVNULL)
     # A tube without a set, with the reason that LAMMPS does not start.
     subprocess.run([program, "parametrize", "5,5", "9,0", "6,0", "--out", "tubes", "--friction", "none", "--quiet"], cwd=folder,
-                   stdout=subprocess.DEVNULL, env={**os.environ, "ROPEWALK_LMP": f"/nowhere/{hostile}"})
+                   stdout=subprocess.DEVNULL, env={**os.environ, "ROPEWALK_LMP": f"{folder}/nowhere/{hostile}"})
 
 
 def hostile_pages(browser, program, folder):

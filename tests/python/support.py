@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import tempfile
 import unittest
 
@@ -19,6 +20,17 @@ ROPE = {
 UNEQUAL = ["tube,x_nm,y_nm,z_nm,qw,qx,qy,qz"] + [
     f"{tube},{1.67 * tube},0,{1.357 * k},1,0,0,0" for tube, n in ((0, 10), (1, 12)) for k in range(n)
 ]
+
+
+def signals_of_a_terminal(test: unittest.TestCase) -> None:
+    """Until the end of the test, signals as a program finds them in a terminal, here and in programs started meanwhile.
+
+    Under nohup HUP is ignored, and in the background of a script INT; programs inherit that.
+    """
+    usual = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL}
+    for number, handler in usual.items():
+        test.addCleanup(signal.signal, number, signal.signal(number, handler))
+    test.addCleanup(signal.pthread_sigmask, signal.SIG_SETMASK, signal.pthread_sigmask(signal.SIG_UNBLOCK, usual))
 
 
 class FolderTest(unittest.TestCase):

@@ -11,7 +11,7 @@ import time
 import unittest
 
 import numpy as np
-from support import ROPE, FolderTest
+from support import ROPE, FolderTest, signals_of_a_terminal
 
 import ropewalk
 
@@ -166,9 +166,11 @@ class ProgramsTest(FolderTest):
         self.assertFalse(os.path.exists("never.toml"))
 
     def test_ctrl_c_leaves_a_run_to_resume(self):
+        signals_of_a_terminal(self)
         code = f"import ropewalk; ropewalk.run({ {**ROPE, 'run': {'duration_ps': 1e6}} !r}, 'run')"
         process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True,
                                    start_new_session=True)
+        self.addCleanup(process.kill)
         while not os.path.exists("run/checkpoint.bin"):
             self.assertIsNone(process.poll())
             time.sleep(0.02)

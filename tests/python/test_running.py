@@ -13,7 +13,7 @@ import time
 import unittest
 from unittest import mock
 
-from support import ROPE, FolderTest
+from support import ROPE, FolderTest, signals_of_a_terminal
 
 import ropewalk
 from ropewalk.programs import find_program
@@ -78,6 +78,8 @@ class RunningTest(FolderTest):
         self.assertGreater(run.log["time_ps"][-1], 1.4)
 
     def interrupt_when(self, path: str) -> None:
+        signals_of_a_terminal(self)
+
         def wait_and_interrupt() -> None:
             while not os.path.exists(path):
                 time.sleep(0.01)

@@ -11,7 +11,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import ROPE, FolderTest
+from support import ROPE, FolderTest, signals_of_a_terminal
 
 import ropewalk
 from ropewalk.state import Elements
@@ -352,7 +352,9 @@ except KeyboardInterrupt:
 
 class InterruptTest(FolderTest):
     def interrupted(self, call: str, scene: dict) -> None:
+        signals_of_a_terminal(self)
         process = subprocess.Popen([sys.executable, "-c", INTERRUPTED % (scene, call)], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
         self.assertEqual(process.stdout.readline(), "at work\n")
         process.send_signal(signal.SIGINT)
         said, _ = process.communicate(timeout=100)

@@ -134,11 +134,15 @@ TEST(BadScenes, AreRefusedInOneLineThatSaysWhereAndWhatToDo) {
   EXPECT_GE(files, 45);
 }
 
-TEST(BadScenes, AFileThatIsNotThere) { EXPECT_THROW(read_scene("/no/such/scene.toml"), InputError); }
+TEST(BadScenes, AFileThatIsNotThere) {
+  const Folder folder;
+  EXPECT_THROW(read_scene(folder.path() + "/scene.toml"), InputError);
+}
 
 TEST(BadScenes, MissingDataIsNamed) {
+  const Folder folder;
   try {
-    find_parameters("cnt-10-10-paper", "", {"", 0, "--parameters"}, "/no/such/place");
+    find_parameters("cnt-10-10-paper", "", {"", 0, "--parameters"}, folder.path() + "/data");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("ROPEWALK_DATA"));

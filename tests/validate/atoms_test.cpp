@@ -10,6 +10,7 @@
 #include "cases/common/tube_curve.hpp"
 #include "core/reference.hpp"
 #include "io/files.hpp"
+#include "io/removal.hpp"
 #include "runner/runner.hpp"
 #include "validate/support.hpp"
 
@@ -28,7 +29,8 @@ TEST(PaperLaw, BindsAboutTwiceAsStronglyAsTheAtoms) {
 
 TEST(MissingReference, IsNotApplicableAndSaysWhatToDo) {
   CaseContext context = test::stored_context();
-  context.references = "/nowhere";
+  const TemporaryFolder folder;
+  context.references = folder.file("references");
   context.sets = {test::shipped("cnt-5-5-tersoff")};
   try {
     find_case("tube-bend").run(context);
