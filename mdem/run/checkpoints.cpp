@@ -15,6 +15,7 @@ RunCheckpoint Checkpoints::here() const {
   c.first_energy = moving_.first_energy;
   c.wall_seconds = clock_.seconds();
   c.control = moving_.control;
+  c.on_limit = limits_.on_limit();
   c.limits = limits_.file();
   c.simulation = moving_.simulation.serialise();
   return c;
@@ -25,13 +26,15 @@ void Checkpoints::set_mark() {
   mark_step_ = moving_.state().step;
 }
 
-void Checkpoints::write(const FileMark& log, const FileMark& frames) {
-  const double began = steady_seconds();
+RunCheckpoint Checkpoints::here_with_mark() const {
   RunCheckpoint c = here();
-  c.log = log;
-  c.frames = frames;
   if (mark_ && mark_->simulation != c.simulation) c.mark = mark_;
   c.origin = origin;
+  return c;
+}
+
+void Checkpoints::write(const RunCheckpoint& c) {
+  const double began = steady_seconds();
   files_.write_checkpoint(c);
   saved_step_ = moving_.state().step;
   fails_ = false;
@@ -41,15 +44,17 @@ void Checkpoints::write(const FileMark& log, const FileMark& frames) {
   longest_save_ = std::max(longest_save_, steady_seconds() - began);
 }
 
-void Checkpoints::save() {
+void Checkpoints::save(StopReason ends_for) {
   files_.sync();
-  write(files_.log_mark(), files_.frames_mark());
+  RunCheckpoint c = here_with_mark();
+  c.ends_for = ends_for;
+  write(c);
 }
 
 void Checkpoints::save_if_possible() {
   files_.sync();
   try {
-    write(files_.log_mark(), files_.frames_mark());
+    write(here_with_mark());
   } catch (const InputError& e) {
     if (!fails_) listener_.tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
     fails_ = true;
@@ -64,11 +69,30 @@ void Checkpoints::save_if_due() {
   begin_interval();
 }
 
-void Checkpoints::save_end() {
+void Checkpoints::save_here() {
   save_if_possible();
   if (fails_) save();
+}
+
+void Checkpoints::keep_here(StopReason ends_for) {
+  files_.sync();
+  kept_ = here_with_mark();
+  kept_.ends_for = ends_for;
+}
+
+void Checkpoints::save_kept() {
+  try {
+    files_.write_checkpoint(kept_);
+  } catch (const InputError&) {
+    // The one before stands.
+  }
+}
+
+void Checkpoints::write_results() {
   moving_.simulation.end_relaxation();  // saved as it was; final.csv is of a state at rest
+  files_.write_events(moving_);
   files_.write_final_state(moving_);
+  limits_.write();
 }
 
 void Checkpoints::save_mark() const {
@@ -80,7 +104,11 @@ void Checkpoints::save_mark() const {
 }
 
 void Checkpoints::save_mark_over_later() {
-  if (saved_step_ > moving_.state().step) write(mark_->log, mark_->frames);
+  if (saved_step_ <= moving_.state().step) return;
+  RunCheckpoint c = here_with_mark();
+  c.log = mark_->log;
+  c.frames = mark_->frames;
+  write(c);
 }
 
 }  // namespace ropewalk

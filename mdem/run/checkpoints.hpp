@@ -23,14 +23,20 @@ class Checkpoints {
   void set_mark();
   void set_mark(std::shared_ptr<const RunCheckpoint> earlier) { mark_ = std::move(earlier); }
 
-  // Throws InputError where it cannot be written.
-  void save();
+  // Throws InputError where it cannot be written. `ends_for`: see RunCheckpoint.
+  void save(StopReason ends_for = StopReason::none);
   // The checkpoint before stands where it cannot be written, and it is tried again.
   void save_if_possible();
   void begin_interval();
   void save_if_due();
-  // With final.csv. Throws InputError as save().
-  void save_end();
+  // Where a run stops: what it writes from here on, its last row and frame among it, is taken back by `resume`.
+  // Throws InputError as save().
+  void save_here();
+  // The same, written by save_kept().
+  void keep_here(StopReason ends_for);
+  void save_kept();
+  // What a run that stops leaves beside log and frames.
+  void write_results();
   // The run broke off: the last good state is saved if it is newer than the checkpoint.
   void save_mark() const;
   // The run went back to the mark: a checkpoint later than this would know of more than log and frames then hold.
@@ -42,7 +48,8 @@ class Checkpoints {
 
  private:
   RunCheckpoint here() const;
-  void write(const FileMark& log, const FileMark& frames);
+  RunCheckpoint here_with_mark() const;
+  void write(const RunCheckpoint& checkpoint);
 
   MovingScene& moving_;
   RunFiles& files_;
@@ -50,6 +57,7 @@ class Checkpoints {
   const RunClock& clock_;
   RunListener& listener_;
   std::shared_ptr<const RunCheckpoint> mark_;
+  RunCheckpoint kept_;
   std::int64_t mark_step_ = 0, saved_step_ = -1;
   double longest_save_ = 0, due_ = 0;  // s
   bool fails_ = false;

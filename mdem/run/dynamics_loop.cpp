@@ -12,28 +12,24 @@ StopReason DynamicsLoop::go() {
   const std::int64_t last_step = run_.schedule.last_step();
   run_.listener.begin_loop(static_cast<double>(run_.step()), static_cast<double>(last_step));
   run_.checkpoints.begin_interval();
-  if (run_.at_once != StopReason::none) return run_.at_once;
-  if (!run_.checkpoints.mark()) run_.way_back.set_mark();
-  StopReason end = StopReason::none;
+  StopReason end = run_.at_once;
+  if (end == StopReason::none && !run_.checkpoints.mark()) run_.way_back.set_mark();
   while (end == StopReason::none && run_.step() < last_step) {
     const Turn turn = next_turn();
-    if (advance(turn))
-      end = end_of(turn);
-    else
-      stop_ = StopReason::none;
+    if (advance(turn)) end = end_of(turn);
   }
   if (end == StopReason::none) end = StopReason::complete;
   if (end == StopReason::complete) run_.listener.end_loop();
-  return end;
+  return run_.stop(end);
 }
 
 DynamicsLoop::Turn DynamicsLoop::next_turn() const {
   const RunSchedule& s = run_.schedule;
   Turn t;
-  t.count = stop_ == StopReason::none ? s.steps_to_next(run_.step(), seconds_of_a_step_) : 1;
+  t.count = s.steps_to_next(run_.step(), seconds_of_a_step_);
   t.step = run_.step() + t.count;
-  t.last = t.step == s.last_step();
-  t.logged = s.has_row(t.step) || t.last || stop_ != StopReason::none;
+  t.last = t.step == s.scene_end();
+  t.logged = s.has_row(t.step) || t.last;
   t.marked = s.has_mark(t.step);
   t.framed = s.has_frame(t.step) || t.last;
   t.checked = t.logged || s.has_check(t.step);
@@ -43,7 +39,7 @@ DynamicsLoop::Turn DynamicsLoop::next_turn() const {
 bool DynamicsLoop::advance(const Turn& t) {
   const double began = steady_seconds();
   try {
-    run_.moving.simulation.steps(t.count, t.logged || t.marked);
+    run_.moving.simulation.steps(t.count, t.logged || t.marked || t.step == run_.schedule.last_step());
   } catch (const NumericalError& e) {
     if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help || !run_.way_back.go_back(e.what())) throw;
     return false;
@@ -56,22 +52,20 @@ bool DynamicsLoop::advance(const Turn& t) {
 }
 
 StopReason DynamicsLoop::end_of(const Turn& t) {
-  if (stop_ == StopReason::none && t.checked) stop_ = run_.limits.check(t.framed);
-  if (t.last && stop_ == StopReason::refine) stop_ = StopReason::none;
-  const bool ends = t.logged && stop_ != StopReason::none;
+  const bool ends = t.last && run_.schedule.ends_with_the_scene();
+  StopReason stop = t.checked ? run_.limits.check(t.framed) : StopReason::none;
+  if (ends && stop == StopReason::refine) stop = StopReason::none;
   if (t.logged) run_.write_row();
-  if (t.logged && !t.last && stop_ == StopReason::none && is_decided()) {
-    run_.write_frame();
-    return StopReason::complete;
-  }
-  if (t.framed || ends) run_.write_frame();
-  if (ends) return stop_;
-  if (const StopReason asked = run_.asked_to_stop(); asked != StopReason::none) return asked;
-  if (run_.listener.wants_progress()) run_.listener.progress(static_cast<double>(t.step), status());
+  if (t.framed) run_.write_frame();
+  if (stop == StopReason::refine) return stop;  // without a mark: a resumed run has to come to it again
   if (t.marked) {
     run_.moving.control.lengthen(run_.moving.simulation);
     run_.way_back.set_mark();
   }
+  if (stop == StopReason::none && t.logged && !ends && is_decided()) stop = StopReason::complete;
+  if (stop == StopReason::none) stop = run_.asked_to_stop();
+  if (stop != StopReason::none) return stop;
+  if (run_.listener.wants_progress()) run_.listener.progress(static_cast<double>(t.step), status());
   if (RunSchedule::has_pause(t.step)) run_.checkpoints.save_if_due();
   return StopReason::none;
 }

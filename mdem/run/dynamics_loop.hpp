@@ -15,7 +15,8 @@ class DynamicsLoop {
   StopReason go();
 
  private:
-  // A number of steps after which something is due.
+  // A number of steps after which something is due. What is due follows from the scene alone, and not from where the
+  // run is to stop, so that a run that goes on is the one that was never stopped.
   struct Turn {
     long count = 0;
     std::int64_t step = 0;  // at its end
@@ -30,7 +31,6 @@ class DynamicsLoop {
   std::string status() const;
 
   RunParts& run_;
-  StopReason stop_ = StopReason::none;  // the run ends after a step with energies: this one, or the next
   double seconds_of_a_step_ = RunSchedule::patience;
 };
 

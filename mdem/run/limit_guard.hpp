@@ -27,6 +27,7 @@ class LimitGuard {
   void go_back_to(const LimitsFile& earlier, std::int64_t step) { watch_.inherit_from(earlier.limits, step); }
   void add(const RefinementRecord& refinement) { refinements_.push_back(refinement); }
 
+  OnLimit on_limit() const { return on_limit_; }
   // Whether a limit that was passed, and only said, may be cured now.
   bool would_refine() const;
   const std::vector<LimitRecord>& records() const { return watch_.records(); }

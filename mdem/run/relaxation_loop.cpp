@@ -11,29 +11,38 @@ StopReason RelaxationLoop::go() {
   Simulation& simulation = run_.moving.simulation;
   const RunOptions& options = run_.moving.scene.run;
   const std::int64_t last_step = run_.schedule.last_step();
-  const long max_steps =
-      last_step >= 0 ? std::max<long>(0, last_step - simulation.relaxation_began()) : options.max_steps;
+  const std::int64_t began = simulation.relaxation_began(), done = run_.step() - began;
+  most_ = last_step >= 0 ? std::max<long>(0, last_step - began) : options.max_steps;
+  if (last_step < 0 && run_.took_all_steps && done >= most_) most_ += done;
   run_.listener.begin_loop(0, 0);
   run_.checkpoints.begin_interval();
-  const Relaxed end = simulation.relax(options.goal, max_steps, [this](long step) { return goes_on_after(step); });
+  Relaxed end = simulation.relax(options.goal, most_ + 1, [this](long step) { return goes_on_after(step); });
   run_.listener.end_loop();
   // In the middle of the relaxation, from where `resume` goes on.
-  if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return stop_;
+  if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return run_.stop(stop_);
+  if (stop_ != StopReason::none) run_.keep_for(stop_);
+  if (stop_ == StopReason::complete) end = simulation.relax(options.goal, most_, [](long) { return true; });
   simulation.end_relaxation();
-  if (run_.state().step != run_.first_step) {
-    run_.write_row();
-    run_.write_frame();
+  run_.write_last();
+  StopReason why = stop_ == StopReason::none ? StopReason::complete : stop_;
+  if (why == StopReason::complete) {
+    const StopReason found = run_.limits.check(true);
+    if (found == StopReason::limit || (found == StopReason::refine && last_step < 0)) why = found;
   }
-  if (stop_ == StopReason::none) stop_ = run_.limits.check(true);
-  if (stop_ != StopReason::none) return stop_;
+  if (stop_ == StopReason::none || (stop_ == StopReason::complete && why == StopReason::refine)) run_.keep_for(why);
+  if (why != StopReason::complete) return why;
   run_.at_rest = end.at_rest;
-  run_.reason = words_of(end, max_steps);
-  return StopReason::complete;
+  run_.reason = words_of(end, most_);
+  return why;
 }
 
 bool RelaxationLoop::goes_on_after(long step) {
+  if (step >= most_) {
+    stop_ = StopReason::complete;
+    return false;
+  }
   if (step % 100 == 0) {
-    if (run_.state().step != run_.first_step) run_.write_row();
+    if (run_.files.row_step() != run_.step()) run_.write_row();
     stop_ = run_.limits.check(false);
     run_.way_back.set_mark();
   }

@@ -21,6 +21,7 @@ class RelaxationLoop {
 
   RunParts& run_;
   StopReason stop_ = StopReason::none;
+  long most_ = 0;  // steps
 };
 
 }  // namespace ropewalk

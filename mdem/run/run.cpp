@@ -75,7 +75,7 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
 }
 
 RunResult Run::finish() {
-  parts_.checkpoints.save_end();
+  parts_.checkpoints.write_results();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
@@ -90,7 +90,7 @@ RunResult Run::finish() {
 }
 
 RunResult Run::stopped_at_limit() {
-  parts_.checkpoints.save_end();
+  parts_.checkpoints.write_results();
   const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}", parts_.state().time,
                                          passed_words(parts_.limits.records()));
   write_end("stopped", reason);
@@ -98,16 +98,16 @@ RunResult Run::stopped_at_limit() {
 }
 
 RunResult Run::stopped(RunEnd end) {
-  parts_.checkpoints.save_end();
+  parts_.checkpoints.write_results();
   const std::string reason = fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
   parts_.files.try_again();
   return result(end, reason);
 }
 
-// This run ends here, whole; the next one is made of it.
+// This run ends here, whole; the next one is made of it. With the first checkpoint of the next one `resume` goes on
+// there: all results of this run stand before.
 RunResult Run::refined() {
-  parts_.checkpoints.save_end();
   const RunDirectory& from = parts_.files.directory();
   const RunDirectory to = finer_directory(from);
   DirectoryLock lock = write_finer_scene(from, parts_.moving.scene, parts_.moving.prepared, parts_.state().time,
@@ -115,9 +115,11 @@ RunResult Run::refined() {
   auto next = std::make_unique<Run>(to, read_run_scene(to), parts_.settings, parts_.listener);
   next->hold(std::move(lock));
   const RefinementRecord split = go_on_finer(parts_, next->parts_);
-  next->begin_files();
   parts_.limits.add(split);
-  write_limits();
+  parts_.checkpoints.write_results();
+  parts_.files.try_again();
+  next->begin_files();
+  parts_.checkpoints.save_kept();
   write_end("refined",
             fmt::format("every element was split at {:.3f} ps; it goes on in {}", split.time_ps, split.to));
   parts_.listener.tell(refinement_words(split, to));

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 6 ";
+constexpr const char* title = "ROPEWALK-CHECKPOINT 7 ";
 constexpr std::size_t hash_length = 16;
 
 struct Writer : ByteWriter {
@@ -61,10 +61,13 @@ void visit_state(Archive& archive, Checkpoint& c) {
     archive(file->bytes);
     archive(file->tail_from);
     archive(file->tail);
+    archive(file->step);
   }
   archive(c.first_energy);
   archive(c.wall_seconds);
   archive(c.control);
+  archive(c.on_limit);
+  archive(c.ends_for);
   archive(c.simulation);
 }
 

@@ -9,8 +9,10 @@
 
 #include "io/growing_file.hpp"
 #include "io/limits_file.hpp"
+#include "run/limit_watch.hpp"
 #include "run/run_directory.hpp"
 #include "run/step_control.hpp"
+#include "run/stop_reason.hpp"
 
 namespace ropewalk {
 
@@ -32,6 +34,8 @@ struct RunCheckpoint {
   double first_energy = 0;  // eV, total at the start: origin of the balance
   double wall_seconds = 0;
   StepControl control;
+  OnLimit on_limit = OnLimit::warn;
+  StopReason ends_for = StopReason::none;  // the run takes no further step, for a limit that was passed here
   LimitsFile limits;
   std::string simulation;
   std::shared_ptr<const RunCheckpoint> mark;  // the last state to go back to; null: this one

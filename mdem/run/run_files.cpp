@@ -8,26 +8,45 @@
 
 namespace ropewalk {
 
-void RunFiles::open(FrameFormat format, std::uint64_t log_bytes, std::uint64_t frame_bytes,
-                    std::size_t expected_frames) {
-  log_ = std::make_unique<GrowingFile>(dir_.log(), log_bytes);
+void RunFiles::open(FrameFormat format, const FileMark& log, const FileMark& frames, std::size_t expected_frames) {
+  log_ = std::make_unique<GrowingFile>(dir_.log(), log.bytes);
   const std::string there = dir_.frames();
   if (std::filesystem::exists(there)) format = format_of(there);
-  frames_ = frame_writer(dir_.frames(format), format, frame_bytes, expected_frames);
+  frames_ = frame_writer(dir_.frames(format), format, frames.bytes, expected_frames);
+  row_step_ = log.step;
+  frame_step_ = frames.step;
 }
 
 void RunFiles::write_header() { log_->write(log_header()); }
 
-void RunFiles::write_row(const LogRow& row) { log_->write(log_line(row)); }
+void RunFiles::write_row(const LogRow& row, std::int64_t step) {
+  log_->write(log_line(row));
+  row_step_ = step;
+}
 
 void RunFiles::write_frame(const MovingScene& m) {
   frames_->write(m.prepared.topology, m.state(),
                  element_colours(m.prepared.topology, m.prepared.interaction, m.state(), m.simulation.tubes_now()));
+  frame_step_ = m.state().step;
+}
+
+FileMark RunFiles::log_mark() const {
+  FileMark mark = log_->mark();
+  mark.step = row_step_;
+  return mark;
+}
+
+FileMark RunFiles::frames_mark() const {
+  FileMark mark = frames_->mark();
+  mark.step = frame_step_;
+  return mark;
 }
 
 void RunFiles::cut(const FileMark& log, const FileMark& frames) {
   log_->cut(log.bytes);
   frames_->cut(frames.bytes);
+  row_step_ = log.step;
+  frame_step_ = frames.step;
 }
 
 void RunFiles::sync() {

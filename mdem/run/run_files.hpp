@@ -21,15 +21,18 @@ class RunFiles {
   // From now on no other process writes in the directory.
   void hold(DirectoryLock lock) { lock_ = std::move(lock); }
 
-  // Opens log and frames, made or cut back to this many bytes.
-  void open(FrameFormat format, std::uint64_t log_bytes, std::uint64_t frame_bytes, std::size_t expected_frames);
+  // Opens log and frames, made or cut back to these marks.
+  void open(FrameFormat format, const FileMark& log, const FileMark& frames, std::size_t expected_frames);
   void write_header();
-  void write_row(const LogRow& row);
+  void write_row(const LogRow& row, std::int64_t step);
   void write_frame(const MovingScene& moving);
+  // Steps of the last ones; -1: not known.
+  std::int64_t row_step() const { return row_step_; }
+  std::int64_t frame_step() const { return frame_step_; }
   // Removes whatever was written after these marks.
   void cut(const FileMark& log, const FileMark& frames);
-  FileMark log_mark() const { return log_->mark(); }
-  FileMark frames_mark() const { return frames_->mark(); }
+  FileMark log_mark() const;
+  FileMark frames_mark() const;
   // Puts log and frames on the disk; called before a checkpoint that refers to them.
   void sync();
 
@@ -53,6 +56,7 @@ class RunFiles {
   DirectoryLock lock_;
   std::unique_ptr<GrowingFile> log_;
   std::unique_ptr<FrameWriter> frames_;
+  std::int64_t row_step_ = -1, frame_step_ = -1;
   PendingFiles pending_;
 };
 

@@ -30,7 +30,30 @@ void RunParts::use_device() {
 void RunParts::write_row() {
   last_row = moving.row();
   stops.add(last_row);
-  files.write_row(last_row);
+  files.write_row(last_row, step());
+}
+
+void RunParts::write_last() {
+  if (files.row_step() != step()) write_row();
+  if (files.frame_step() != step()) write_frame();
+}
+
+// That of a run which is refined is written after the first one of the finer run: killed in between, the run comes
+// to the splitting again by itself.
+void RunParts::keep_for(StopReason why) {
+  if (why == StopReason::refine)
+    checkpoints.keep_here(why);
+  else
+    checkpoints.save_here();
+}
+
+StopReason RunParts::stop(StopReason why) {
+  keep_for(why);
+  if (why == StopReason::asked || why == StopReason::wall_time) return why;
+  const bool looked = files.frame_step() == step() || !reason.empty();
+  if (why == StopReason::complete && !looked && limits.check(true) == StopReason::limit) why = StopReason::limit;
+  write_last();
+  return why;
 }
 
 StopReason RunParts::asked_to_stop() {

@@ -19,6 +19,14 @@ struct RunParts {
   void use_device();
   void write_row();
   void write_frame() { files.write_frame(moving); }
+  // Where the run stops for this reason: a checkpoint as of a run that goes on. What is written later is taken back
+  // by `resume`.
+  void keep_for(StopReason why);
+  // The same, and then the row and the frame of the last step. Returns `why`, or StopReason::limit where this step
+  // passes one.
+  StopReason stop(StopReason why);
+  // Row and frame of this step, where they are not there yet.
+  void write_last();
   // Asks the listener and the clock whether the run has to stop now. Returns the reason, or StopReason::none.
   StopReason asked_to_stop();
 
@@ -34,8 +42,8 @@ struct RunParts {
   WayBack way_back;
 
   LogRow last_row;
-  std::int64_t first_step = -1;           // its row and frame were there when the run began or went on
   StopReason at_once = StopReason::none;  // before the first step
+  bool took_all_steps = false;            // a relaxation had run out of its steps when it was resumed
   std::string asked_by;                   // who asked for an end
   std::string reason;                     // of the end, in words
   bool at_rest = true;                    // false: a relaxation ran out of steps

@@ -32,7 +32,7 @@ void RunSchedule::count_from(std::int64_t step, double time, double time_step) {
   frames_every_ = every(frames_interval_, span, 40, time_step);
   check_every_ = std::min(log_every_, window_);
   expected_frames_ = static_cast<std::size_t>(span / time_step / static_cast<double>(frames_every_));
-  if (!relaxes_) last_step_ = step_at(duration_);
+  if (!relaxes_) last_step_ = scene_end_ = step_at(duration_);
 }
 
 void RunSchedule::look_rarely() {
@@ -51,12 +51,9 @@ void RunSchedule::end_at(long steps, double ps) {
   if (steps >= 0) last_step_ = steps;
 }
 
-bool RunSchedule::ends_with_the_scene() const {
-  return last_step_ == std::lround(duration_ / counted_from_.time_step);
-}
-
 long RunSchedule::steps_to_next(std::int64_t step, double seconds_of_a_step) const {
   long count = last_step_ - step;
+  if (scene_end_ > step) count = std::min<long>(count, scene_end_ - step);
   for (const long interval : {check_every_, log_every_, frames_every_, pause_every, window_})
     count = std::min(count, interval - step % interval);
   return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));

@@ -18,7 +18,9 @@ class RunSchedule {
   void count_from(std::int64_t step, double time, double time_step);
 
   std::int64_t last_step() const { return last_step_; }  // -1: of a relaxation, which ends by itself
-  bool ends_with_the_scene() const;
+  // Of the scene. A run that --steps or --until ends at another one stops on the way.
+  std::int64_t scene_end() const { return scene_end_; }
+  bool ends_with_the_scene() const { return last_step_ == scene_end_; }
   std::size_t expected_frames() const { return expected_frames_; }  // of the whole scene
   bool has_row(std::int64_t step) const { return step % log_every_ == 0; }
   bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
@@ -47,7 +49,7 @@ class RunSchedule {
     double time = 0, time_step = 0;
   } counted_from_;
   long log_every_ = 1, frames_every_ = 1, check_every_ = 1, window_ = StepControl::window;
-  std::int64_t last_step_ = -1;
+  std::int64_t last_step_ = -1, scene_end_ = -1;
   std::size_t expected_frames_ = 0;
 };
 

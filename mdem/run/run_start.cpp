@@ -51,15 +51,14 @@ void Run::begin_files() {
   p.checkpoints.origin = origin_of(p.files.directory(), scene);
   p.checkpoints.origin.device = device_name();
   write_manifest("running");  // before the checkpoint: it has the name of the scene
-  p.files.open(scene.run.frames_format, 0, 0, p.schedule.expected_frames());
+  p.files.open(scene.run.frames_format, {}, {}, p.schedule.expected_frames());
   p.files.write_header();
   p.write_row();
   p.write_frame();
-  p.first_step = p.state().step;
-  if (!p.moving.relaxes() && p.state().step < p.schedule.last_step() &&
+  if (!p.moving.relaxes() && p.state().step < p.schedule.scene_end() &&
       std::isfinite(p.moving.simulation.total_energy()))
     p.at_once = p.limits.check(true);
-  p.checkpoints.save();
+  p.checkpoints.save(p.at_once);
 }
 
 void Run::restore(RunCheckpoint c) {
@@ -77,16 +76,20 @@ void Run::restore(RunCheckpoint c) {
   p.clock.earlier = c.wall_seconds;
   p.checkpoints.origin = origin_of(dir, p.moving.scene);
   p.checkpoints.origin.device = device_name();
-  p.files.open(p.moving.scene.run.frames_format, c.log.bytes, c.frames.bytes, p.schedule.expected_frames());
+  p.files.open(p.moving.scene.run.frames_format, c.log, c.frames, p.schedule.expected_frames());
   p.limits.inherit(c.limits, p.state().step);
   if (!p.stops.empty())
     for (const LogRow& earlier : read_log(dir.log())) p.stops.add(earlier);
   // A run that a rule has ended stands at its last row, and is not taken further.
   if (p.stops.last_step() == p.state().step && p.state().step > 0)
     if (p.reason = p.stops.decided(p.limits.records()); !p.reason.empty()) p.at_once = StopReason::complete;
-  if (p.at_once == StopReason::none && p.limits.would_refine()) p.at_once = p.limits.check(true);
+  const bool as_before = c.on_limit == p.limits.on_limit();
+  if (as_before && c.ends_for != StopReason::none) p.at_once = c.ends_for;
+  if (p.at_once == StopReason::none && !as_before && p.limits.would_refine() &&
+      std::isfinite(p.moving.simulation.total_energy()))
+    p.at_once = p.limits.check(true);
+  p.took_all_steps = std::filesystem::exists(dir.manifest()) && read_manifest(dir.manifest()).status != "running";
   p.checkpoints.stands_at_checkpoint();
-  p.first_step = p.state().step;
   if (c.mark)
     p.checkpoints.set_mark(c.mark);
   else

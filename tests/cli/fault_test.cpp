@@ -28,7 +28,7 @@ constexpr const char* lively =
 constexpr const char* calm =
     "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n"
     "[start]\ntemperature_K = 300\nmay_cool = true\n[run]\nduration_ps = 0.25\ntime_step_fs = 5\n"
-    "log_every_ps = 0.025\nframes_every_ps = 0.06\ncheckpoint_every_s = 1e-6\n";
+    "log_every_ps = 0.025\nframes_every_ps = 0.05\ncheckpoint_every_s = 1e-6\n";
 
 class Faults : public Cli {
  protected:
@@ -619,6 +619,7 @@ TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
   };
   const long calls = calls_of("run s.toml --out d" + refine);
   ASSERT_TRUE(fs::exists(dir / "d.fine/final.csv"));
+  fs::rename(dir / "d", dir / "coarse");
   fs::rename(dir / "d.fine", dir / "whole");
   int tried = 0;
   for (long n = first(5); n <= calls; n += step(5), ++tried) {
@@ -630,8 +631,10 @@ TEST_F(Faults, RefinedRunKilledAndGoneOnWith) {
     else if (o.code == 2 && o.err.find("there is no checkpoint") != std::string::npos)
       o = run("run s.toml --force --out d" + refine);
     ASSERT_EQ(o.code, 0) << n << ": " << o.err;
-    for (const char* name : {"log.csv", "frames.gsd", "final.csv"})
+    for (const char* name : {"log.csv", "frames.gsd", "final.csv", "limits.json"}) {
       ASSERT_TRUE(slurp(dir / "d.fine" / name) == slurp(dir / "whole" / name)) << n << ": " << name;
+      ASSERT_TRUE(slurp(dir / "d" / name) == slurp(dir / "coarse" / name)) << n << ": " << name << " of the first";
+    }
   }
   fmt::print("kill in a refined run: {} tried\n", tried);
 }
