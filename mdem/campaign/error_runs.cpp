@@ -113,7 +113,7 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   for (std::size_t k = 0; k < scene_.sets.size(); ++k)
     sets.push_back(k == source.set ? set.name() : base_.parameters(k));
   Scene scene = read_scene(base_.scene(), sets);
-  if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state());
+  if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state(), base_.state_memory());
   scene.run.time_step = time_step_;
   scene.run.frames_every = 1e9;  // ps: the logs alone are compared
   VariedRunListener listener;

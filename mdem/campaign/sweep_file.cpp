@@ -217,6 +217,10 @@ struct Setting {
 
 constexpr const char *length_key = "element_length_nm", *seed_key = "start.seed";
 
+bool has_random_drive(const Scene& scene) {
+  return std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& d) { return d->is_random(); });
+}
+
 // Resizes the tubes of a point for another element length, so that their free length stays as near as whole
 // elements go. `before`: the scene with its old element length. The text stays as it is for a wrong scene, which
 // the check of the point refuses, and for a sweep that gives a size of the tubes with each element length.
@@ -257,6 +261,24 @@ SweepPoint named_point(const std::vector<std::string>& keys, const std::vector<S
   return p;
 }
 
+// Motion that is random is so by other numbers at other points. Those that leave a shared start, and a point with
+// another seed, have the stream of the start and of the point.
+void set_stream(const Sweep& s, const std::vector<const SweepAxis*>& axes, SweepPoint& p) {
+  if (s.common_noise) return;
+  std::string of;
+  for (std::size_t k = 0; k < std::min(axes.size(), s.axes.size()); ++k)
+    if (axes[k]->key != seed_key && axes[k]->values.size() > 1) of += axes[k]->key + " = " + p.values[k] + "\n";
+  if (of.empty()) return;
+  try {
+    const Scene scene = scene_of_text(p.text, s.scene_path);
+    if (scene.start.stream != 0 || !(scene.start.temperature > 0 || has_random_drive(scene))) return;
+  } catch (const InputError&) {
+    return;  // the check of the point refuses it
+  }
+  p.text = with_value(p.text, "start.stream", std::to_string(std::stoul(hash_hex(of).substr(0, 8), nullptr, 16)),
+                      s.scene_path);
+}
+
 // The scene of a point, by its values. That of a start has those of the first axes alone.
 void write_scene(const Sweep& s, SweepPoint& p) {
   std::vector<const SweepAxis*> axes;
@@ -281,6 +303,7 @@ void write_scene(const Sweep& s, SweepPoint& p) {
     set(k);
     keep_free_length(s, before, leading_number(p.values[k]).value_or(0), p.text);
   }
+  set_stream(s, axes, p);
   // The promise of a plan holds for the planned scene with any seed, and for no other scene.
   if (expectations_of(s.scene_text).errors.empty()) return;
   for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -368,6 +391,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
   s.scene_text = read_file(s.scene_path);
   s.zip = top.word_or<bool>("combine", false, {{"grid", false}, {"zip", true}});
   s.replicates = static_cast<int>(top.integer_or("replicates", 0, 1, 100000));
+  s.common_noise = top.boolean_or("common_noise", false);
   top.has("vary");  // read below: its keys are those of a scene
   const TomlTable branch = top.table("branch");
   if (top.has("branch")) s.branch_at = branch.number("at_ps", Bounds::positive());

@@ -4,6 +4,7 @@
 //   scene = "rope.toml"          # looked for beside this file
 //   combine = "grid"             # every value with every other, or "zip": the first values, the second ones, ...
 //   replicates = 3               # each point with start.seed 1, 2, 3
+//   common_noise = true          # all points have the random numbers of one; without it each has its own
 //   [vary]
 //   rope.tubes = [7, 19, 37]
 //   thermostat.temperature_K = { from = 200, to = 400, points = 5 }   # or step = 50; log = true: even ratios
@@ -48,6 +49,7 @@ struct Sweep {
   std::string scene_path, scene_text;
   bool zip = false;
   int replicates = 0;                        // 0: the seed is not varied
+  bool common_noise = false;                 // of points that differ in more than the seed
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
   std::optional<ThresholdQuestion> threshold;

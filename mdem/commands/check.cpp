@@ -12,6 +12,7 @@
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/state_files.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/line/law.hpp"
 
@@ -86,6 +87,7 @@ int check_command(const std::string& path) {
   }
   say_source(scene, p);
   for (const auto& drive : scene.drives) fmt::print("{}\n", drive->words());
+  for (const std::string& what : forgotten(scene.memory, p.interaction)) fmt::print("note: {}\n", what);
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);

@@ -30,6 +30,7 @@ void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& lis
   const auto all = std::string::npos;
   copy(from.scene(), to.scene(), all);
   copy_parameters(scene, to);
+  if (fs::exists(from.state_memory())) copy(from.state_memory(), to.state_memory(), all);
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.log.bytes);

@@ -16,7 +16,7 @@
 #include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
-#include "scene/state_csv.hpp"
+#include "scene/state_files.hpp"
 #include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
@@ -165,10 +165,11 @@ class Import {
     m.steps = reached_;
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
-    const std::string final_state = state_csv(prepared_.topology, prepared_.state);
+    const StateFiles end = state_files(simulation, dir_.final_state());
     write_file_atomically(dir_.log(), log_);
     frames_->replace();
-    write_file_atomically(dir_.final_state(), final_state);
+    if (!end.memory.empty()) write_file_atomically(dir_.final_memory(), end.memory);
+    write_file_atomically(dir_.final_state(), end.state);
     write_file_atomically(dir_.limits(), limits_json(checkpoint_.limits));
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);

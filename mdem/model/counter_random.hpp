@@ -23,6 +23,14 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> c, std::
   return c;
 }
 
+// The key for other numbers of the same seed, one for each lineage; the seed itself for none, 0.
+inline std::uint64_t lineage_key(std::uint64_t seed, std::uint64_t lineage) {
+  if (lineage == 0) return seed;
+  const auto bits =
+      philox({static_cast<std::uint32_t>(lineage), static_cast<std::uint32_t>(lineage >> 32), 0, 0}, seed);
+  return bits[0] | std::uint64_t{bits[1]} << 32;
+}
+
 // In (0, 1): the middles of 2^32 equal steps.
 inline double unit_interval(std::uint32_t bits) { return (bits + 0.5) * 0x1p-32; }
 

@@ -3,6 +3,7 @@
 #include "plan/forecast.hpp"
 #include "python/arrays.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/state_files.hpp"
 
 namespace ropewalk::python {
 namespace {
@@ -12,8 +13,9 @@ std::vector<std::string> notes_of(const SceneHandle& handle) {
   const std::shared_ptr<const Model> model = handle.model();
   refuse_cooling(model->scene, model->prepared);
   std::vector<std::string> all;
-  for (const auto& notes : {warnings_of(model->scene, model->prepared), warmth_of(model->scene, model->prepared),
-                            limits_ahead(model->scene, model->prepared)})
+  for (const auto& notes :
+       {forgotten(model->scene.memory, model->prepared.interaction), warnings_of(model->scene, model->prepared),
+        warmth_of(model->scene, model->prepared), limits_ahead(model->scene, model->prepared)})
     all.insert(all.end(), notes.begin(), notes.end());
   return all;
 }

@@ -14,7 +14,7 @@
 #include "run/run_checkpoint.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/single_state.hpp"
-#include "scene/state_csv.hpp"
+#include "scene/state_files.hpp"
 
 namespace ropewalk::python {
 namespace {
@@ -173,7 +173,7 @@ void SteppedScene::drive(std::shared_ptr<const Scene> as) {
   simulation_.use_loads(std::move(loads));
   Stepping stepping = simulation_.stepping();
   stepping.thermostat = nullptr;
-  for (const auto& drive : scene.drives) drive->set_stepping(stepping);
+  for (const auto& drive : scene.drives) drive->set_stepping(model_->scene.lineage, stepping);
   simulation_.use_thermostat(stepping.thermostat);
   driven_ = std::move(as);
   forget();
@@ -294,8 +294,10 @@ void bind_simulation(py::module_& m) {
   c.def("checkpoint", [](const SteppedScene& s) { return py::bytes(s.checkpoint()); });
   c.def("restore", [](SteppedScene& s, const py::bytes& bytes) { s.restore(bytes); });
   c.def("restore_run", &SteppedScene::restore_run);
-  c.def("state_csv",
-        [](const SteppedScene& s) { return state_csv(s.simulation().topology(), s.simulation().state()); });
+  c.def("state_files", [](const SteppedScene& s, const std::string& path) {
+    StateFiles files = state_files(s.simulation(), path);
+    return py::make_tuple(std::move(files.state), std::move(files.memory), memory_path_of(path));
+  });
 }
 
 }  // namespace ropewalk::python

@@ -82,7 +82,12 @@ std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, cons
   try {
     write_file_atomically(dir.scene(), scene.text);
     copy_parameters(scene, dir);
-    if (scene.from_file()) write_file_atomically(dir.state(), read_file(scene.source->file()));
+    if (scene.from_file()) {
+      const StateMemory memory = scene.source->memory();
+      if (!memory.path.empty() && !memory.missing)
+        write_file_atomically(dir.state_memory(), read_file(memory.path));
+      write_file_atomically(dir.state(), read_file(scene.source->file()));
+    }
     run->tell_notes();
     run->begin_files();
   } catch (const InputError& e) {

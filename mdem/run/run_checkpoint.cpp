@@ -152,7 +152,10 @@ RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
   o.scene = scene.text;
   for (const ParameterSet& set : scene.sets) o.sets.push_back(set.hash);
   for (const std::string& file : scene.files_of_drives()) o.files.push_back(hash_hex(read_file(file)));
-  if (scene.from_file()) o.state = hash_hex(read_file(dir.state()));
+  if (scene.from_file()) {
+    o.state = hash_hex(read_file(dir.state()));
+    if (fs::exists(dir.state_memory())) o.state += hash_hex(read_file(dir.state_memory()));
+  }
   o.version = version;
   o.git_id = git_id;
   o.instructions = instructions_in_use();

@@ -77,6 +77,7 @@ const std::vector<OutputFile>& run_files() {
       {"parameters-*.toml", "run", "the parameter sets of further types, from 1"},
       {"friction-*.toml", "run", "friction of pairs of tubes, of a scene that takes it from files, from 0"},
       {"state.csv", "run", "the start, of a scene that reads its state from a file"},
+      {"state-memory.csv", "run", "what friction, links and tethers remember at that start"},
       {"log.csv", "run", "observables against time"},
       {"frames.gsd", "run", "elements against time, for OVITO and MDAnalysis"},
       {"frames.lammpstrj", "run, convert", "the same as text, for LAMMPS, ASE and OVITO"},
@@ -95,7 +96,10 @@ const std::vector<OutputFile>& run_files() {
       {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
       {"final.csv", "run, import",
        "the state at the end, interrupted or not: the start of another scene by [state]"},
+      {"final-memory.csv", "run, import",
+       "what friction, links and tethers remember there; it belongs beside `final.csv`"},
       {"failed-state.csv", "run", "the state of a run that failed"},
+      {"failed-state-memory.csv", "run", "what friction, links and tethers remember there"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
       {"rope.state", "export", "binary: the state where LAMMPS begins"},
@@ -192,7 +196,7 @@ Scene read_run_scene(const RunDirectory& dir) {
   std::vector<std::string> sets = {dir.parameters(0)};
   while (fs::exists(dir.parameters(sets.size()))) sets.push_back(dir.parameters(sets.size()));
   Scene scene = read_scene(dir.scene(), sets);
-  if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state());
+  if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state(), dir.state_memory());
   // A scene without a name has that of its file, which here is always scene.toml.
   if (fs::exists(dir.manifest())) scene.name = read_manifest(dir.manifest()).scene;
   return scene;

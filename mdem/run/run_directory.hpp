@@ -30,12 +30,14 @@ struct RunDirectory {
   }
   std::string friction(std::size_t k) const { return path + "/friction-" + std::to_string(k) + ".toml"; }
   std::string state() const { return file("state.csv"); }
+  std::string state_memory() const { return file("state-memory.csv"); }
   std::string report() const { return file("report.html"); }
   std::string view() const { return file("view.html"); }
   std::string plan_check() const { return file("plan-check.csv"); }
   std::string events() const { return file("events.csv"); }
   std::string limits() const { return file("limits.json"); }
   std::string final_state() const { return file("final.csv"); }
+  std::string final_memory() const { return file("final-memory.csv"); }
   std::string failed_state() const { return file("failed-state.csv"); }
 };
 

@@ -4,7 +4,7 @@
 
 #include "run/colours.hpp"
 #include "run/events_file.hpp"
-#include "scene/state_csv.hpp"
+#include "scene/state_files.hpp"
 
 namespace ropewalk {
 
@@ -60,7 +60,9 @@ void RunFiles::write_events(const MovingScene& m) {
 }
 
 void RunFiles::write_state(const std::string& path, const MovingScene& m) {
-  pending_.write(path, state_csv(m.simulation.tubes_now(), m.state()));
+  const StateFiles files = state_files(m.simulation, path);
+  if (!files.memory.empty()) pending_.write(memory_path_of(path), files.memory);
+  pending_.write(path, files.state);
 }
 
 }  // namespace ropewalk

@@ -7,6 +7,7 @@
 #include "model/error.hpp"
 #include "plan/forecast.hpp"
 #include "run/run.hpp"
+#include "scene/state_files.hpp"
 
 namespace ropewalk {
 
@@ -37,8 +38,8 @@ void Run::tell_notes() const {
   const Scene& scene = parts_.moving.scene;
   const Prepared& prepared = parts_.moving.prepared;
   for (const std::string& grade : grades_of(scene)) parts_.listener.tell_detail("parameters " + grade);
-  for (const auto& notes :
-       {warnings_of(scene, prepared), warmth_of(scene, prepared), limits_ahead(scene, prepared)})
+  for (const auto& notes : {forgotten(scene.memory, prepared.interaction), warnings_of(scene, prepared),
+                            warmth_of(scene, prepared), limits_ahead(scene, prepared)})
     for (const std::string& note : notes) parts_.listener.tell_note(note);
 }
 
@@ -96,7 +97,8 @@ void Run::restore(RunCheckpoint c) {
     p.way_back.set_mark();
   // Files of the earlier end; the next end writes them again.
   std::error_code ignored;
-  for (const std::string& path : {dir.final_state(), dir.plan_check()}) std::filesystem::remove(path, ignored);
+  for (const std::string& path : {dir.final_state(), dir.final_memory(), dir.plan_check()})
+    std::filesystem::remove(path, ignored);
 }
 
 // The checkpoint may be of a scene with another time step, which then stays.

@@ -211,6 +211,8 @@ BuiltScene build(Scene& scene) {
   }
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
+  scene.memory = scene.source->memory();
+  scene.lineage = lineage_key(scene.start.stream, scene.memory.lineage);
   if (const std::string memory = beyond_memory(out.topology.elements()); !memory.empty())
     throw InputError({scene.path, 0, scene.kind},
                      fmt::format("holds {} elements, {}", out.topology.elements(), memory),
@@ -222,6 +224,7 @@ BuiltScene build(Scene& scene) {
   out.topology.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
   set_collapse(scene, out.topology);
   check_state(scene, out);
+  if (scene.lineage != 0) random = Random(lineage_key(scene.start.seed, scene.lineage));
   if (scene.start.temperature > 0) set_thermal_velocities(out.topology, scene.start.temperature, random, out.state);
   return out;
 }

@@ -14,7 +14,7 @@ struct BuiltScene {
   std::shared_ptr<const ContactLaw> law;  // null: none
 };
 
-// Also sets the reach of the scene's contact viscosity, which goes with the spacing.
+// Also sets the reach of the scene's contact viscosity, which goes with the spacing, its memory and its lineage.
 BuiltScene build(Scene& scene);
 
 }  // namespace ropewalk

@@ -3,6 +3,7 @@
 // one loop each. loads/drive_kind.hpp is the register of drives.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -71,7 +72,10 @@ class Drive {
   virtual void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const {}
   // Adds its force terms (sim/forces/force_term.hpp), with add_term(). Throws likewise.
   virtual void add_terms(const Scene&, const Topology&, const State& /*start*/, Interaction&) const {}
-  virtual void set_stepping(Stepping&) const {}
+  // Whether it draws random numbers while the scene moves.
+  virtual bool is_random() const { return false; }
+  // `lineage`: that of the scene (Scene::lineage).
+  virtual void set_stepping(std::uint64_t /*lineage*/, Stepping&) const {}
   // Throws InputError if the elements at the start do not bear it; `loads` are those of all drives.
   virtual void refuse_start(const Scene&, const Topology&, const State&,
                             const LoadsAndConstraints& /*loads*/) const {}

@@ -10,6 +10,7 @@
 #include "model/error.hpp"
 #include "model/segments.hpp"
 #include "observe/centre_line.hpp"
+#include "scene/state_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
@@ -243,12 +244,13 @@ Prepared prepare(Scene& scene) {
   out.spacing = built.spacing;
   out.interaction = interaction_of(scene, std::move(built.law));
   add_terms(scene, out.topology, out.state, out.interaction);
+  begin_with(scene.memory, out.topology, out.interaction);
   out.loads = loads_of(scene, out.topology, out.interaction);
   out.stepping = scene.run.stepping;
   refuse_upside_down(scene, out);
   for (const auto& drive : scene.drives) {
     drive->refuse_start(scene, out.topology, out.state, out.loads);
-    drive->set_stepping(out.stepping);
+    drive->set_stepping(scene.lineage, out.stepping);
   }
   for (const auto& load : out.loads) load->begin(out.topology, out.state);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);

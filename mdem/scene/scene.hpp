@@ -29,6 +29,7 @@ struct StartOptions {
   double temperature = 0;  // K, of the initial velocities
   bool may_cool = false;   // damping may take that heat away
   std::uint64_t seed = 1;
+  std::uint64_t stream = 0;
   double turn = 0;     // rad/nm, by which straight tubes are wound about their axis at first
   double wave = 0;     // nm, by which straight tubes are bent sideways at first
   int half_waves = 1;  // along them
@@ -82,6 +83,10 @@ struct Scene {
   double element_length = 0;       // nm
   std::string kind;                // the table of its source: "rope"; empty where it was not read from a file
   std::shared_ptr<const Source> source;
+  // Set by build(). Random numbers of the motion are others for another lineage (lineage_key): a scene that goes on
+  // from the end of another one has other noise.
+  StateMemory memory;
+  std::uint64_t lineage = 0;
   StartOptions start;
   BondOptions bond;
   ContactOptions contact;

@@ -10,6 +10,7 @@
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/state_csv.hpp"
+#include "scene/state_files.hpp"
 
 namespace ropewalk {
 namespace {
@@ -101,6 +102,7 @@ EvaluatedState evaluate(const SingleState& s) {
   EvaluatedState out{build(scene), Forces()};
   Interaction interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
+  begin_with(scene.memory, out.built.topology, interaction);
   out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference);
   return out;
 }

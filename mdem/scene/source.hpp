@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "scene/state_memory.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
@@ -39,6 +40,8 @@ class Source {
   virtual bool draws_together(bool /*unlike*/) const { return false; }
   // The file that the elements are read from; empty: no file.
   virtual std::string file() const { return ""; }
+  // What force terms and tubes remember there.
+  virtual StateMemory memory() const { return {}; }
   // The key that LAMMPS cannot carry; empty: it can.
   virtual std::string not_for_lammps() const { return ""; }
   // Describes the placed elements to the user.

@@ -47,6 +47,8 @@ constexpr const char* length_words = "element_length_nm: ";
 constexpr const char* types_words = "tube_types: ";
 constexpr const char* strands_words = "strands_begin_with_tubes: ";
 constexpr const char* ropes_words = "ropes_begin_with_strands: ";
+constexpr const char* memory_words = "memory: ";
+constexpr const char* broken_words = "broken_behind_elements: ";
 
 struct Row {
   int tube = 0;
@@ -116,6 +118,26 @@ std::vector<int> stated_strands(const CsvReader& csv) {
   return stated_begins(csv, strands_words, "strands", "tube of each strand");
 }
 
+// Elements, rising.
+std::vector<int> stated_breaks(const CsvReader& csv) {
+  std::vector<int> broken;
+  for (const std::string_view comment : csv.comments()) {
+    if (comment.rfind(broken_words, 0) != 0) continue;
+    const std::string text(comment.substr(std::string_view(broken_words).size()));
+    const char* at = text.c_str();
+    for (char* end = nullptr;; at = end + 1) {
+      const long element = std::strtol(at, &end, 10);
+      if (end == at || element < 0 || element >= max_elements || (!broken.empty() && element <= broken.back()) ||
+          (*end != ',' && *end != '\0'))
+        csv.fail("", fmt::format("the comment above says \"{}\" of broken tubes", printable(text, 40)),
+                 "write elements from 0, rising, with commas between them, or take the comment away");
+      broken.push_back(static_cast<int>(element));
+      if (*end == '\0') return broken;
+    }
+  }
+  return broken;
+}
+
 class StateReader {
  public:
   StateReader(const std::string& path, Topology& topology) : path_(path), csv_(path), topology_(topology) {}
@@ -128,6 +150,7 @@ class StateReader {
         check_length();
         check_sets();
         topology_.strand_begin = stated_strands(csv_);
+        broken_ = stated_breaks(csv_);
         topology_.rope_begin = stated_begins(csv_, ropes_words, "ropes", "strand of each rope");
       }
       if (rows_.size() == static_cast<std::size_t>(max_elements))
@@ -138,6 +161,7 @@ class StateReader {
     }
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
     if (!stated_) check_spacing();
+    check_breaks();
     close_strands();
     close_ropes();
     return state();
@@ -157,15 +181,32 @@ class StateReader {
            fmt::format("it must be {0}, or {1}", header, whole_header));
   }
 
+  void check_breaks() const {
+    if (joined_.size() == broken_.size()) return;
+    for (const int e : broken_)
+      if (static_cast<std::size_t>(e) + 1 >= rows_.size() ||
+          rows_[static_cast<std::size_t>(e)].tube == rows_[static_cast<std::size_t>(e) + 1].tube)
+        throw InputError({path_, 0, ""},
+                         fmt::format("its comment has a tube that is broken behind element {}, where none ends", e),
+                         "take the comment away, or complete the file");
+  }
+
   void close_strands() {
     std::vector<int>& begin = topology_.strand_begin;
     if (begin.empty()) return;
+    // The comment counts the parts of broken tubes.
+    for (int& tube : begin)
+      tube -= static_cast<int>(std::upper_bound(joined_.begin(), joined_.end(), tube) - joined_.begin());
     if (begin.back() >= topology_.tubes())
       throw InputError({path_, 0, ""},
                        fmt::format("its comment has a strand that begins with tube {}, and there are {} tubes",
                                    begin.back(), topology_.tubes()),
                        "take the comment away, or complete the file");
     begin.push_back(topology_.tubes());
+    if (!joined_.empty() && topology_.strands() == topology_.tubes()) {
+      begin.clear();
+      return;
+    }
     // Along the chord of both elements at a hole.
     double holes = 0;
     for (int t = 0; t < topology_.tubes(); ++t) {
@@ -265,13 +306,19 @@ class StateReader {
 
   void append_to_tubes(const Row& row) {
     if (rows_.empty() || row.tube != rows_.back().tube) {
-      if (row.tube < topology_.tubes())
+      const int next = topology_.tubes() + static_cast<int>(joined_.size());
+      if (row.tube < next)
         fail("tube", fmt::format("{} comes again after {}", row.tube, rows_.back().tube),
              "keep the lines of a tube together");
-      if (row.tube > topology_.tubes())
-        fail("tube", fmt::format("is {}, {} is next", row.tube, topology_.tubes()),
-             "number the tubes 0, 1, 2, ... in order");
-      topology_.add_tube(1);
+      if (row.tube > next)
+        fail("tube", fmt::format("is {}, {} is next", row.tube, next), "number the tubes 0, 1, 2, ... in order");
+      if (!rows_.empty() &&
+          std::binary_search(broken_.begin(), broken_.end(), static_cast<int>(rows_.size()) - 1)) {
+        joined_.push_back(row.tube);
+        ++topology_.tube_begin.back();
+      } else {
+        topology_.add_tube(1);
+      }
       return;
     }
     ++topology_.tube_begin.back();
@@ -303,6 +350,8 @@ class StateReader {
   std::vector<Row> rows_;
   std::size_t columns_here_ = 0;
   bool stated_ = false;  // the length, by the file
+  std::vector<int> broken_;  // elements
+  std::vector<int> joined_;  // tubes of the file that are the next part of a broken one
 };
 
 }  // namespace
@@ -329,7 +378,17 @@ bool state_has_strands(const std::string& path) {
   return csv.next() && csv.next() && !stated_strands(csv).empty();
 }
 
-std::string state_csv(const Topology& topology, const State& s) {
+StateNotes read_state_notes(const std::string& path) {
+  CsvReader csv(path);
+  StateNotes notes;
+  if (!csv.next() || !csv.next()) return notes;
+  notes.broken = stated_breaks(csv);
+  for (const std::string_view comment : csv.comments())
+    if (comment.rfind(memory_words, 0) == 0) notes.memory = comment.substr(std::string_view(memory_words).size());
+  return notes;
+}
+
+std::string state_csv(const Topology& topology, const State& s, const StateNotes& notes) {
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));
   if (!topology.strand_begin.empty())
@@ -338,6 +397,8 @@ std::string state_csv(const Topology& topology, const State& s) {
   if (!topology.rope_begin.empty())
     text += fmt::format("# {}{}\n", ropes_words,
                         fmt::join(topology.rope_begin.begin(), topology.rope_begin.end() - 1, ","));
+  if (!notes.memory.empty()) text += fmt::format("# {}{}\n", memory_words, notes.memory);
+  if (!notes.broken.empty()) text += fmt::format("# {}{}\n", broken_words, fmt::join(notes.broken, ","));
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);

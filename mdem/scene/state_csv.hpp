@@ -3,7 +3,9 @@
 // that start with # are skipped. The quaternion turns the element's own z into its tube axis. The line below the
 // header, "# element_length_nm: 1.356", states the length of an element, and "# tube_types: 0,1,1" which of several
 // parameter sets each tube has, "# strands_begin_with_tubes: 0,3" which tubes follow one another in line, and
-// "# ropes_begin_with_strands: 0,7" which make a rope of their own; a file may leave them out.
+// "# ropes_begin_with_strands: 0,7" which make a rope of their own; a file may leave them out. A tube that has
+// broken stands there as two, and "# broken_behind_elements: 12" says where; it is read as the one tube that it
+// was.
 #pragma once
 
 #include <string>
@@ -16,6 +18,13 @@ namespace ropewalk {
 
 std::vector<OutputColumn> state_columns();
 
+// What the header of a state file says besides: a memory of force terms (scene/state_memory.hpp), and the elements
+// behind which tubes have broken.
+struct StateNotes {
+  std::string memory;
+  std::vector<int> broken;
+};
+
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
 // line and column, also where the file states another length or more parameter sets, or states no length and
 // neighbours along a tube lie at another.
@@ -26,7 +35,9 @@ double state_element_length(const std::string& path);
 // Whether the file says that its tubes follow one another in strands (Topology::strand_begin).
 bool state_has_strands(const std::string& path);
 
-// The file, with velocities, in all digits.
-std::string state_csv(const Topology& topology, const State& state);
+StateNotes read_state_notes(const std::string& path);
+
+// The file, with velocities, in all digits. `topology`: cut where tubes have broken.
+std::string state_csv(const Topology& topology, const State& state, const StateNotes& notes = {});
 
 }  // namespace ropewalk

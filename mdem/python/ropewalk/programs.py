@@ -112,6 +112,7 @@ def sweep(
     *,
     replicates: Optional[int] = None,
     combine: str = "grid",
+    common_noise: bool = False,
     jobs: Optional[int] = None,
     on_limit: str = "warn",
     again: bool = False,
@@ -125,6 +126,7 @@ def sweep(
         out: directory of the campaign
         replicates: each point so many times, with other seeds (no unit)
         combine: "grid": every value with every other; "zip": the first values, then the second ones, ...
+        common_noise: all points have the random numbers of one; without it each has its own
         jobs: runs at a time; None: one on each core (no unit)
         on_limit: where a limit of [limits] is passed: "warn" or "stop"
         again: runs failed points once more
@@ -135,6 +137,8 @@ def sweep(
         table: dict[str, Any] = {"format": "ropewalk-sweep-1", "scene": path, "combine": combine, "vary": dict(vary)}
         if replicates is not None:
             table["replicates"] = replicates
+        if common_noise:
+            table["common_noise"] = True
         file_name = os.path.join(folder, "sweep.toml")
         with open(file_name, "w", encoding="utf-8") as file:
             file.write(toml_of(table))

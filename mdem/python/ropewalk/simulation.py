@@ -361,11 +361,15 @@ class Simulation:
 
     def write_state(self, path: str | os.PathLike[str]) -> None:
         """Writes the state as final.csv of a run: nm, nm/ps, rad/ps. Scenes start from it by {"state": {"file": path}}.
+        What friction, links and tethers remember goes into a second file beside it, whose name ends in -memory.csv.
 
         Arguments:
             path: the file (no unit)
         """
-        write_whole(path, self._core.state_csv().encode())
+        state, memory, memory_path = self._core.state_files(os.fspath(path))
+        if memory:
+            write_whole(memory_path, memory.encode())
+        write_whole(path, state.encode())
 
 
 def _simulation_again(scene: Scene, forces: tuple[OwnForce, ...], checkpoint: bytes) -> Simulation:

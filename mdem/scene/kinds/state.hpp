@@ -7,14 +7,17 @@ namespace ropewalk {
 
 class StateSource : public Source {
  public:
-  explicit StateSource(std::string path = "") : path_(std::move(path)) {}
+  // `memory`: where its memory lies; empty: beside it.
+  explicit StateSource(std::string path = "", std::string memory = "")
+      : path_(std::move(path)), memory_path_(std::move(memory)) {}
 
   void place(const Scene&, double spacing, Random&, Topology&, State&) const override;
   std::string file() const override { return path_; }
+  StateMemory memory() const override { return read_state_memory(path_, memory_path_); }
   std::string not_for_lammps() const override;
 
  private:
-  std::string path_;
+  std::string path_, memory_path_;
 };
 
 }  // namespace ropewalk

@@ -6,6 +6,8 @@
 // The limit of strain may scatter from bond to bond: a normal number, at least a tenth of the mean, by the seed and
 // the number of the element. The energy of the bond is lost. The parts of the tube are then joined by nothing but
 // contact; as before, elements within the exclusion along the tube do not touch each other. Units nm, ps, eV.
+#include "scene/loads/failure.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,6 +29,7 @@ namespace {
 
 constexpr double never_breaks = std::numeric_limits<double>::infinity();
 constexpr double least_share = 0.1;  // of the mean strain
+constexpr std::uint32_t strain_question = 0xFFFFFFFE;  // a last number of counters that nothing else takes
 
 struct FailureLaw {
   double strain = 0, deviation = 0;
@@ -35,7 +38,7 @@ struct FailureLaw {
 
   double strain_of(int element) const {
     if (!(deviation > 0)) return strain;
-    const auto bits = philox({static_cast<std::uint32_t>(element), 0, 0, 0}, seed);
+    const auto bits = philox({static_cast<std::uint32_t>(element), 0, 0, strain_question}, seed);
     return std::max(least_share * strain, strain + deviation * normal_pair(bits[0], bits[1])[0]);
   }
 };
@@ -61,6 +64,15 @@ class TubeFailure : public ForceTerm {
   std::string name() const override { return "failure"; }
   const std::vector<char>* broken_bonds() const override { return all_.empty() ? nullptr : &broken_; }
 
+  // Bonds that had broken before the start are where they are at the start.
+  void prepare(const ListedScene& scene) override {
+    for (BrokenBond& b : all_) {
+      const auto i = static_cast<std::size_t>(b.element);
+      if (!placed_) b.place = 0.5 * (scene.state.position[i] + scene.state.position[i + 1]);
+    }
+    placed_ = true;
+  }
+
   Happened advance(double, const State& state) override {
     Happened now;
     for (int t = 0; t < topology_.tubes(); ++t)
@@ -78,6 +90,7 @@ class TubeFailure : public ForceTerm {
     return out;
   }
   void remember(const TermMemory& memory) override {
+    placed_ = true;
     all_.clear();
     broken_.assign(limit_.size(), 0);
     for (const TermRecord& r : memory) {
@@ -88,6 +101,11 @@ class TubeFailure : public ForceTerm {
       all_.push_back({r.element, x[0], Vector3(x[1], x[2], x[3])});
       for (const int e : with_images(r.element)) broken_[static_cast<std::size_t>(e)] = 1;
     }
+  }
+  void begin_with(const TermMemory& memory) override {
+    remember(memory);
+    for (BrokenBond& b : all_) b.time = 0;
+    placed_ = false;
   }
   std::vector<TermEvent> events() const override {
     std::vector<TermEvent> out;
@@ -135,6 +153,7 @@ class TubeFailure : public ForceTerm {
   std::vector<double> limit_;  // of strain, of the bond behind each element
   std::vector<char> broken_;   // likewise
   std::vector<BrokenBond> all_;
+  bool placed_ = true;
 };
 
 // --- its table ----------------------------------------------------------------------------------------
@@ -200,6 +219,13 @@ const KeyTable<FailureDrive>& failure_table() {
 SceneTable FailureDrive::table() const { return failure_table().doc(); }
 
 }  // namespace
+
+std::shared_ptr<const ForceTerm> broken_tubes_term(const Topology& topology) {
+  FailureLaw law;
+  constexpr double beyond_all = 1e6;
+  law.strain = beyond_all;
+  return std::make_shared<TubeFailure>(law, topology);
+}
 
 DriveKind failure_drive() {
   return {

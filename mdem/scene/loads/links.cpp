@@ -34,13 +34,19 @@ class LinksDrive : public Drive {
     if (scene.contact.law == "none")
       throw top.error("links", "join tubes in contact, and contact.law is \"none\"", "take one of the two away");
   }
-  void add_terms(const Scene&, const Topology& topology, const State& state,
+  void add_terms(const Scene& scene, const Topology& topology, const State& state,
                  Interaction& interaction) const override {
-    add_term(link_term(law, at_start(topology, state), topology), interaction);
+    LinkLaw of_scene = law;
+    of_scene.lineage = scene.lineage;
+    const bool remembered = scene.memory.has("links");
+    add_term(link_term(of_scene, remembered ? std::vector<LinkPlace>() : at_start(topology, state), topology),
+             interaction);
   }
-  void refuse_start(const Scene&, const Topology& topology, const State& state,
+  void refuse_start(const Scene& scene, const Topology& topology, const State& state,
                     const LoadsAndConstraints&) const override {
-    if (law.forming > 0 || law.placed_at > 0 || !(law.density > 0 || law.at_ends > 0 || !between.empty())) return;
+    if (scene.memory.has("links") || law.forming > 0 || law.placed_at > 0 ||
+        !(law.density > 0 || law.at_ends > 0 || !between.empty()))
+      return;
     if (!at_start(topology, state).empty()) return;
     throw InputError(
         {path, 0, "links"},
@@ -50,6 +56,7 @@ class LinksDrive : public Drive {
             law.reach),
         "raise reach_nm or per_nm, or bring the tubes nearer");
   }
+  bool is_random() const override { return law.forming > 0; }
   std::string why_not_split() const override { return between.empty() ? "" : "links name elements by number"; }
   std::string not_for_lammps() const override { return "links"; }
 

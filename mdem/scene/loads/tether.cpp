@@ -37,7 +37,11 @@ struct TetherEnd {
 class Tether : public ForceTerm {
  public:
   Tether(std::array<TetherEnd, 2> ends, double k, double rest, double breaks_at)
-      : ends_(std::move(ends)), k_(k), rest_(rest), breaks_at_(breaks_at) {}
+      : ends_(std::move(ends)),
+        k_(k),
+        rest_(rest),
+        breaks_at_(breaks_at),
+        rests_as_it_starts_(rest == at_the_start) {}
 
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<Tether>(*this); }
   std::string name() const override { return "tether"; }
@@ -92,6 +96,7 @@ class Tether : public ForceTerm {
     return sum;
   }
 
+  bool remembers() const override { return true; }
   TermMemory memory() const override {
     if (first_ == elsewhere) return {};
     return {{ends_[0].elements.front(), {rest_, broken_ ? 1.0 : 0.0}}};
@@ -102,7 +107,7 @@ class Tether : public ForceTerm {
     const std::vector<double>& numbers = memory.front().numbers;
     if (memory.size() > 1 || numbers.size() != 2 || !(numbers[0] >= 0) || (numbers[1] != 0 && numbers[1] != 1))
       throw std::runtime_error("the memory of a tether is damaged");
-    rest_ = numbers[0];
+    if (rests_as_it_starts_) rest_ = numbers[0];
     broken_ = numbers[1] == 1;
   }
 
@@ -113,6 +118,7 @@ class Tether : public ForceTerm {
 
   std::array<TetherEnd, 2> ends_;  // the first one has elements
   double k_, rest_, breaks_at_;    // eV/nm^2, nm, nm
+  bool rests_as_it_starts_ = false;
   bool broken_ = false;
   int first_ = 0;         // place of its first element, to which energy and memory belong
   bool away_ = false;     // another process has all of it

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "model/counter_random.hpp"
 #include "scene/key_table.hpp"
 #include "scene/loads/drive_kind.hpp"
 #include "scene/scene.hpp"
@@ -59,6 +60,12 @@ DriveKind thermostat_drive() {
 }
 
 SceneTable ThermostatDrive::table() const { return thermostat_table().doc(); }
+
+void ThermostatDrive::set_stepping(std::uint64_t lineage, Stepping& stepping) const {
+  ThermostatOptions of_scene = options;
+  of_scene.seed = lineage_key(options.seed, lineage);
+  stepping.thermostat = make_thermostat(of_scene);
+}
 
 std::string ThermostatDrive::words() const {
   return fmt::format("thermostat: {}, {} K, coupling {:.4g} 1/ps, seed {}", options.method,

@@ -13,7 +13,8 @@ class ThermostatDrive : public Drive {
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   double lasts() const override { return options.temperature.ends(); }
-  void set_stepping(Stepping& stepping) const override { stepping.thermostat = make_thermostat(options); }
+  bool is_random() const override { return options.temperature.largest() > 0; }
+  void set_stepping(std::uint64_t lineage, Stepping& stepping) const override;
   const ThermostatOptions* thermostat() const override { return &options; }
   std::string not_for_lammps() const override { return "thermostat"; }
   std::optional<std::vector<std::pair<std::string, double>>> hastened(double) const override {

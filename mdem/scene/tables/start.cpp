@@ -15,6 +15,10 @@ const KeyTable<StartOptions>& start_table() {
            "damping may take this heat, or that of [thermostat], away; without this key such a run is refused"),
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
                     "of all random numbers: the same seed gives the same run"),
+       Key::integer(
+           "stream", 0, std::numeric_limits<long>::max(), &StartOptions::stream, standard(),
+           "other random numbers of the motion for the same seed, on the same tubes: a sweep gives each of its "
+           "points one"),
        Key::number("twist_deg_per_nm", {"deg/nm", units::degree}, Bounds::range(-30, 30), &StartOptions::turn,
                    standard(), "tubes side by side begin wound about the axis of the rope, by this along it"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),

@@ -133,6 +133,8 @@ class Simulation {
     const std::vector<char>* broken = engine_.terms().broken_bonds();
     return broken ? cut_behind(topology_, *broken) : topology_;
   }
+  const std::vector<char>* broken_bonds() const { return engine_.terms().broken_bonds(); }
+  std::vector<NamedMemory> term_memories() const { return engine_.terms().memories(); }
   std::vector<TermEvent> term_events() const { return engine_.terms().events(); }
   // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
   // and energies are those of the present state.

@@ -84,6 +84,11 @@ struct TermRecord {
   std::vector<double> numbers;
 };
 using TermMemory = std::vector<TermRecord>;
+// That of a term of this name.
+struct NamedMemory {
+  std::string term;
+  TermMemory records;
+};
 
 // Something that happened in the course of a run: when (ps), what, between which elements of the scene, where (nm).
 struct TermEvent {
@@ -131,10 +136,15 @@ class ForceTerm {
   // upper bound. The time step follows from it.
   virtual double stiffness() const { return 0; }
 
+  // Whether there are any.
+  virtual bool remembers() const { return false; }
   // The records of own elements, and back: those of all processes.
   virtual TermMemory memory() const { return {}; }
   // Throws std::runtime_error where the term cannot have had this memory.
   virtual void remember(const TermMemory&) {}
+  // The memory of another scene, from whose end state this one begins at time zero: what has happened there is no
+  // event here. Throws likewise.
+  virtual void begin_with(const TermMemory& memory) { remember(memory); }
   // The memory where elements are half as long: what belongs to the element e goes to heirs[e], its first half or the
   // one in its place (sim/dynamics/refine.hpp).
   virtual TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const;

@@ -191,6 +191,13 @@ std::vector<double> ForceTerms::memory() const {
   return numbers_of(all);
 }
 
+std::vector<NamedMemory> ForceTerms::memories() const {
+  std::vector<NamedMemory> all;
+  for (std::size_t k = 0; k < copied_.size(); ++k)
+    all.push_back({terms_[k].term->name(), terms_[k].term->memory()});
+  return all;
+}
+
 void ForceTerms::remember(const std::vector<double>& numbers, int elements, bool with_accounts) {
   const TermMemories all = memories_of(numbers, terms_.size(), elements);
   for (std::size_t k = 0; k < terms_.size(); ++k) {

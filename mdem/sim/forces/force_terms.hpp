@@ -54,6 +54,8 @@ class ForceTerms : private PairWork {
   std::vector<TermEvent> events() const;
 
   std::vector<double> memory() const;
+  // The memories of the interaction's own terms, in their order.
+  std::vector<NamedMemory> memories() const;
   // prepare() then finds all lists new. `with_accounts`: false in all processes but one. Throws std::runtime_error.
   void remember(const std::vector<double>& numbers, int elements, bool with_accounts = true);
   std::vector<double> halved_memory(const std::vector<int>& heirs) const;

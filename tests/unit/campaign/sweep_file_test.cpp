@@ -50,6 +50,33 @@ class SweepFile : public ::testing::Test {
   fs::path dir;
 };
 
+// Each point has other noise, on the same tubes; points that differ in their seed, or leave one start, have one
+// stream.
+TEST_F(SweepFile, PointsHaveNoiseOfTheirOwn) {
+  std::ofstream(dir / "rope.toml", std::ios::app) << "[start]\ntemperature_K = 10\nmay_cool = true\n";
+  const auto streams = [&](const std::string& rest) {
+    const Sweep s = sweep(rest);
+    std::vector<std::uint64_t> out;
+    for (const SweepPoint& p : points_of(s)) out.push_back(scene_of(s, p).start.stream);
+    return out;
+  };
+  const std::string moments = "[vary]\ntwist.moment_nN_nm = [8, 9]\n";
+  const std::vector<std::uint64_t> own = streams("replicates = 2\n" + moments);
+  ASSERT_EQ(own.size(), 4u);
+  EXPECT_NE(own[0], 0u);
+  EXPECT_EQ(own[0], own[1]) << "the seeds differ";
+  EXPECT_NE(own[0], own[2]);
+  EXPECT_THAT(streams("common_noise = true\n" + moments), ElementsAre(0, 0));
+  EXPECT_THAT(streams("replicates = 2\n"), ElementsAre(0, 0));
+  EXPECT_THAT(streams("[vary]\nstart.stream = [3, 4]\n"), ElementsAre(3, 4));
+  const Sweep branched =
+      sweep(moments + "[branch]\nat_ps = 2\n[branch.vary]\ndamping.bond_damping_per_ps = [1, 2]\n");
+  const std::vector<SweepPoint> points = points_of(branched);
+  const SweepPoint start = starts_of(branched, points)[0];
+  EXPECT_EQ(scene_of(branched, points[0]).start.stream, scene_of(branched, start).start.stream);
+  EXPECT_EQ(scene_of(branched, points[1]).start.stream, scene_of(branched, start).start.stream);
+}
+
 TEST_F(SweepFile, GridTakesEveryValueWithEveryOther) {
   EXPECT_THAT(names("replicates = 2\n[vary]\nrope.tubes = [7, 19]\ncontact.law = [\"line\"]\n"),
               ElementsAre("tubes-7_seed-1", "tubes-7_seed-2", "tubes-19_seed-1", "tubes-19_seed-2"));

@@ -149,6 +149,7 @@ class DryFrictionTerm : public ForceTerm {
   // Six tubes around one, 2 K of two elements.
   double stiffness() const override { return stiffness_; }
 
+  bool remembers() const override { return true; }
   TermMemory memory() const override {
     TermMemory out;
     for (const Contact& c : contacts_)

@@ -71,10 +71,10 @@ LinkPlace place_of(const LinkLaw& law, const State& state, int i, int j, const A
   return link;
 }
 
-// Random number k, in (0, 1), of the elements i and j at this step.
+// Random number k, in (0, 1), of the elements i and j at this step; 0: of the structure.
 double drawn(const LinkLaw& law, int i, int j, std::uint32_t step, std::uint32_t k) {
-  return unit_interval(
-      philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), step, k}, law.seed)[0]);
+  return unit_interval(philox({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), step, k},
+                              step == 0 ? law.seed : lineage_key(law.seed, law.lineage))[0]);
 }
 
 // A number of events with this mean, by inversion. Means are small: an element is short.
@@ -249,6 +249,7 @@ class LinkTerm : public ForceTerm {
   double stiffness() const override { return stiffness_; }
   long begun_at_start() const override { return static_cast<long>(links_.size()); }
 
+  bool remembers() const override { return true; }
   TermMemory memory() const override {
     TermMemory out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0}}};
     for (const Link& link : links_) {
@@ -295,6 +296,22 @@ class LinkTerm : public ForceTerm {
     }
     if (!has_head) fail();
     placed_ = true;
+  }
+
+  // Whole links are there at the start; those that have broken are forgotten.
+  void begin_with(const TermMemory& memory) override {
+    remember(memory);
+    links_.erase(std::remove_if(links_.begin(), links_.end(), [](const Link& link) { return link.broke != never; }),
+                 links_.end());
+    std::vector<LinkPlace> places;
+    for (Link& link : links_) {
+      link.formed = 0;
+      places.push_back(link.at);
+    }
+    stiffness_ = stiffness_of(places);
+    placed_ = false;
+    last_formed_ = given_ = 0;
+    begun_ = 0;
   }
 
   // Where all elements are cut in two, each point goes to the half that it stands beside. Where the shorter

@@ -15,8 +15,8 @@
 // `reach` between their walls, at random places (Poisson), or `at_ends` links of each tube end with the tubes that
 // it faces; or they are placed like that at a later time. While a scene moves, links form with the rate `forming`
 // per length and time, every picosecond, as long as there are less than `most` per length of either tube. What
-// forms depends on the numbers of the elements, the seed and the step, so that a run gives the same bits on any
-// number of threads and after `resume`.
+// forms depends on the numbers of the elements, the seed, the lineage and the step, so that a run gives the same
+// bits on any number of threads and after `resume`.
 //
 // Source of the shear lag that such links give: O. Volkersen, Luftfahrtforschung 15, 41 (1938). Units nm, ps, eV.
 #pragma once
@@ -39,6 +39,7 @@ struct LinkLaw {
   double placed_at = 0;  // ps; above 0: `density` and `at_ends` place links in the first step after this time
   double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
+  std::uint64_t lineage = 0;  // of the links that form while the scene moves: see lineage_key()
   std::vector<int> types;  // two types of tubes, whose contacts get links; none: all contacts do
 
   // Whether it joins tubes of these types.
