@@ -26,13 +26,14 @@ StopReason DynamicsLoop::go() {
 DynamicsLoop::Turn DynamicsLoop::next_turn() const {
   const RunSchedule& s = run_.schedule;
   Turn t;
-  t.count = s.steps_to_next(run_.step(), seconds_of_a_step_);
+  t.closely = !s.looks_rarely() || run_.moving.control.looks_closely(run_.moving.simulation);
+  t.count = s.steps_to_next(run_.step(), t.closely, seconds_of_a_step_);
   t.step = run_.step() + t.count;
   t.last = t.step == s.scene_end();
   t.logged = s.has_row(t.step) || t.last;
-  t.marked = s.has_mark(t.step);
+  t.marked = s.has_mark(t.step, t.closely);
   t.framed = s.has_frame(t.step) || t.last;
-  t.checked = t.logged || s.has_check(t.step);
+  t.checked = t.logged || s.has_check(t.step, t.closely);
   return t;
 }
 
@@ -41,11 +42,13 @@ bool DynamicsLoop::advance(const Turn& t) {
   try {
     run_.moving.simulation.steps(t.count, t.logged || t.marked || t.step == run_.schedule.last_step());
   } catch (const NumericalError& e) {
-    if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help || !run_.way_back.go_back(e.what())) throw;
+    if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help ||
+        !run_.way_back.go_back(e.what(), t.closely))
+      throw;
     return false;
   }
   if ((t.marked || t.last) && !run_.way_back.is_sound() &&
-      run_.way_back.go_back("the account of energy did not close"))
+      run_.way_back.go_back("the account of energy did not close", t.closely))
     return false;
   seconds_of_a_step_ = std::max((steady_seconds() - began) / static_cast<double>(t.count), 1e-9);
   return true;

@@ -15,11 +15,12 @@ class DynamicsLoop {
   StopReason go();
 
  private:
-  // A number of steps after which something is due. What is due follows from the scene alone, and not from where the
-  // run is to stop, so that a run that goes on is the one that was never stopped.
+  // A number of steps after which something is due. What is due follows from the scene alone, and not from where
+  // the run is to stop, so that a run that goes on is the one that was never stopped.
   struct Turn {
     long count = 0;
     std::int64_t step = 0;  // at its end
+    bool closely = false;   // a device is looked at as often as this processor
     bool last = false, logged = false, marked = false, framed = false, checked = false;
   };
   Turn next_turn() const;

@@ -31,7 +31,7 @@ void LimitGuard::inherit(const LimitsFile& earlier, std::int64_t step) {
 // control, where next to nothing has moved.
 double LimitGuard::drift() const {
   const std::int64_t step = moving_.state().step;
-  if (moving_.relaxes() || (step < schedule_.window() && step != schedule_.scene_end()))
+  if (moving_.relaxes() || (step < StepControl::window && step != schedule_.scene_end()))
     return std::numeric_limits<double>::quiet_NaN();
   return energy_drift(moving_.account());
 }

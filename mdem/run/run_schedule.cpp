@@ -30,15 +30,11 @@ void RunSchedule::count_from(std::int64_t step, double time, double time_step) {
   const double span = duration_ > 0 ? duration_ : 1000 * time_step;
   log_every_ = every(log_interval_, span, 400, time_step);
   frames_every_ = every(frames_interval_, span, 40, time_step);
-  check_every_ = std::min(log_every_, window_);
   expected_frames_ = static_cast<std::size_t>(span / time_step / static_cast<double>(frames_every_));
   if (!relaxes_) last_step_ = scene_end_ = step_at(duration_);
 }
 
-void RunSchedule::look_rarely() {
-  window_ = window_of_a_device;
-  check_every_ = std::min(log_every_, window_);
-}
+void RunSchedule::look_rarely() { window_ = window_of_a_device; }
 
 // Steps are counted from zero, but where the time step was another one before.
 std::int64_t RunSchedule::step_at(double ps) const {
@@ -51,11 +47,11 @@ void RunSchedule::end_at(long steps, double ps) {
   if (steps >= 0) last_step_ = steps;
 }
 
-long RunSchedule::steps_to_next(std::int64_t step, double seconds_of_a_step) const {
+long RunSchedule::steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const {
   long count = last_step_ - step;
   if (scene_end_ > step) count = std::min<long>(count, scene_end_ - step);
-  for (const long interval : {check_every_, log_every_, frames_every_, pause_every, window_})
-    count = std::min(count, interval - step % interval);
+  for (const long interval : {log_every_, frames_every_, pause_every, static_cast<long>(window(closely))})
+    count = std::min<long>(count, interval - step % interval);
   return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
 }
 

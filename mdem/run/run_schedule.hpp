@@ -1,6 +1,7 @@
 // When a run writes and checks, and where it ends, in time steps.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "run/step_control.hpp"
@@ -24,16 +25,19 @@ class RunSchedule {
   std::size_t expected_frames() const { return expected_frames_; }  // of the whole scene
   bool has_row(std::int64_t step) const { return step % log_every_ == 0; }
   bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
-  bool has_check(std::int64_t step) const { return step % check_every_ == 0; }
+  // `closely`: see StepControl.
+  bool has_check(std::int64_t step, bool closely) const {
+    return step % std::min<std::int64_t>(log_every_, window(closely)) == 0;
+  }
   // Of a good state, to which the run may go back.
-  bool has_mark(std::int64_t step) const { return step % window_ == 0; }
-  std::int64_t window() const { return window_; }  // between two marks
+  bool has_mark(std::int64_t step, bool closely) const { return step % window(closely) == 0; }
   // Where a device moves the elements, a look at their state costs, by estimate, as much as
   // hundreds of steps.
   void look_rarely();
+  bool looks_rarely() const { return window_ > StepControl::window; }
   static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
   // Steps until something is written or checked, or a request to stop has waited for `patience`.
-  long steps_to_next(std::int64_t step, double seconds_of_a_step) const;
+  long steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const;
 
   static constexpr double patience = 0.5;  // s, of a request to stop a run
 
@@ -41,6 +45,7 @@ class RunSchedule {
   static constexpr long pause_every = 16;
 
   std::int64_t step_at(double ps) const;
+  std::int64_t window(bool closely) const { return closely ? StepControl::window : window_; }  // between two marks
 
   double log_interval_, frames_interval_, duration_;  // ps
   bool relaxes_;
@@ -48,7 +53,7 @@ class RunSchedule {
     std::int64_t step = 0;
     double time = 0, time_step = 0;
   } counted_from_;
-  long log_every_ = 1, frames_every_ = 1, check_every_ = 1, window_ = StepControl::window;
+  long log_every_ = 1, frames_every_ = 1, window_ = StepControl::window;
   std::int64_t last_step_ = -1, scene_end_ = -1;
   std::size_t expected_frames_ = 0;
 };

@@ -14,6 +14,11 @@ void StepControl::shorten(int divided, Simulation& simulation) {
   kept_until = step + keep;
 }
 
+bool StepControl::looks_closely(const Simulation& simulation) const {
+  const std::int64_t step = simulation.step_count();
+  return step < close_until || simulation.divided() > 1 || keep > least_keep || step < kept_until;
+}
+
 void StepControl::lengthen(Simulation& simulation) {
   const std::int64_t step = simulation.step_count();
   if (step < kept_until) return;

@@ -1,7 +1,9 @@
-// The step that follows the motion. A run marks a good state every `window` steps (with a device less often,
-// RunSchedule::look_rarely). Where the motion blows up, or the account of energy does not close over a window, it goes
-// back to the last mark and divides every step in two, up to `most` parts, and puts steps together again once the
-// motion has been quiet. Files count by the whole steps.
+// The step that follows the motion. A run marks a good state every `window` steps. Where the motion blows up, or
+// the account of energy does not close over a window, it goes back to the last mark and divides every step in two,
+// up to `most` parts, and puts steps together again once the motion has been quiet. Files count by the whole steps.
+//
+// With a device it looks and marks less often (RunSchedule::look_rarely) as long as steps are whole. Where a long
+// window fails, it does that window again and looks closely, so that it divides the same steps as without a device.
 //
 // All of it depends on the states alone: a run is the same bits on any number of threads and after a resume.
 #pragma once
@@ -18,10 +20,13 @@ struct StepControl {
 
   std::int64_t kept_until = 0;     // the step before which steps stay divided
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next
+  std::int64_t close_until = 0;    // the step before which a run with a device looks closely
 
   // Halves the steps after a failure with steps divided into `divided` parts. The simulation stands at the mark
   // again.
   void shorten(int divided, Simulation& simulation);
+  // Whether the next window is a short one.
+  bool looks_closely(const Simulation& simulation) const;
   // At a mark, after a window without failure.
   void lengthen(Simulation& simulation);
 };

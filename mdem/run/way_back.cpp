@@ -18,18 +18,23 @@ bool WayBack::is_sound() const {
   return moving_.scene.contact.legacy_torque || account_closes(energy_, moving_.simulation);
 }
 
-bool WayBack::go_back(const std::string& why) {
+bool WayBack::go_back(const std::string& why, bool looked_closely) {
   Simulation& simulation = moving_.simulation;
   const int divided = simulation.divided();
   const double time = simulation.time();
+  const std::int64_t step = simulation.step_count();
   if (divided >= StepControl::most) return false;
   const RunCheckpoint& c = *checkpoints_.mark();
   simulation.restore(c.simulation);
-  moving_.control.shorten(divided, simulation);
+  if (looked_closely)
+    moving_.control.shorten(divided, simulation);
+  else
+    moving_.control.close_until = step;
   limits_.go_back_to(c.limits, simulation.step_count());
   stops_.cut(simulation.step_count());
   checkpoints_.save_mark_over_later();
   files_.cut(c.log, c.frames);
+  if (!looked_closely) return true;
   // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
   listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.4g} fs", time,
                              why.substr(0, why.find(';')), simulation.time(),

@@ -26,8 +26,9 @@ class WayBack {
   void restore(const RunCheckpoint& mark);
   // A model that gains energy has no account to close.
   bool is_sound() const;
-  // False where steps are as short as they get: the failure stands.
-  bool go_back(const std::string& why);
+  // The next steps are shorter, or looked at more closely if they have not been. False where steps are as short as
+  // they get: the failure stands.
+  bool go_back(const std::string& why, bool looked_closely);
 
  private:
   MovingScene& moving_;
