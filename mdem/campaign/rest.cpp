@@ -89,13 +89,14 @@ RestVerdict rest_verdict(const std::array<RestSide, 2>& s, double tolerance) {
   if (!both_still)
     out.words = fmt::format(
         "Not at rest: in the last {:.3g} ps the rope that began below {} degrees, to {:.4g} in the mean, and the "
-        "one that began "
-        "above {}, to {:.4g}. Make twist.hold_ps longer.",
+        "one that began above {}, to {:.4g}. Make the hold longer: twist.hold_ps, or run.duration_ps where other "
+        "drives twist.",
         0.2 * s[0].time, motion(s[0]), s[0].twist, motion(s[1]), s[1].twist);
   else if (s[0].branch() == s[1].branch())
     out.words = fmt::format(
         "Both sides stand still {}, at {:.4g} degrees from below and {:.4g} from above: a slow motion, or a band "
-        "of friction. Make twist.hold_ps longer, or the viscosity lower.",
+        "of friction. Make the hold longer (twist.hold_ps, or run.duration_ps where other drives twist), or the "
+        "viscosity lower.",
         s[0].branch(), s[0].twist, s[1].twist);
   else
     out.words = fmt::format(

@@ -19,6 +19,8 @@
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
+#include "scene/scene_toml.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -150,6 +152,26 @@ std::string TrialHashes::of(double value) const {
 
 namespace {
 
+// What drives the ends of the rope at this value.
+EndDrives drives_at(const Sweep& sweep, const SweepPoint& point, double value) {
+  Scene scene = scene_of_text(trial_text(sweep, point, value), sweep.scene_path);
+  const Prepared p = prepare(scene);
+  return end_drives(p.loads, p.topology);
+}
+
+// Whether the key is the moment of both ends, as [twist] and a [[grip]] at both ends have it.
+bool is_end_moment(const Sweep& sweep, const SweepPoint& point, double now) {
+  const auto follows = [&](double moment) {
+    try {
+      const auto there = end_moment(drives_at(sweep, point, moment / units::nN_nm));
+      return there && there->balanced && std::fabs(there->largest() / moment - 1) < 1e-3;
+    } catch (const InputError&) {
+      return false;  // a key of something else may not take this value
+    }
+  };
+  return follows(now) && follows(0.5 * now);
+}
+
 // The runs in the directory.
 std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point) {
   std::vector<Trial> trials;
@@ -157,9 +179,7 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
   const std::string folder = dir.point(point.name).path, begins = leaf_of(q.key) + "-";
   if (!fs::exists(folder)) return trials;
   refuse_strange(folder, true);
-  const Scene scene = scene_of(sweep, point);
-  const MomentRamp* ramp = scene.moment_ramp();
-  const double constant_from = ramp ? ramp->ramp_time() : 0;
+  const double wave = scene_of(sweep, point).start.wave;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name == "threshold.csv") continue;
@@ -167,12 +187,9 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
     refuse_strange(run.path, true);
     if (name.rfind(begins, 0) != 0 || progress_of(run).stage != PointProgress::Stage::ended) continue;
     const double value = leading_number(std::string_view(name).substr(begins.size())).value_or(0);
-    // A moment that the ramp takes less time to.
-    const double from = ramp && ramp->moment > 0 && q.key == "twist.moment_nN_nm"
-                            ? constant_from * value * units::nN_nm / ramp->moment
-                            : constant_from;
     const bool by_a_rule = progress_of(run).reason.rfind(decided_words, 0) == 0;
-    trials.push_back(trial_of(read_log(run.log()), q, value, scene.start.wave, from, by_a_rule));
+    trials.push_back(
+        trial_of(read_log(run.log()), q, value, wave, whole_from(drives_at(sweep, point, value)), by_a_rule));
     trials.back().scene_hash = trial_hash(sweep, point, value);
   }
   return trials;
@@ -391,7 +408,9 @@ PhasePoint point_in_theory(const Sweep& sweep, const SweepPoint& p) {
   point.length = prepared.topology.length_of(0) * prepared.topology.longest_element();
   point.radius = farthest + prepared.topology.largest_radius();
   const ThresholdQuestion& q = *sweep.threshold;
-  if (q.key == "twist.moment_nN_nm") point.theory = helix_theory(scene, prepared);
+  point.theory = helix_theory(scene, prepared);
+  const auto moment = end_moment(end_drives(prepared.loads, prepared.topology));
+  if (point.theory && !is_end_moment(sweep, p, moment->largest())) point.theory.reset();
   if (q.shape == RopeShape::helix) point.passing = 0.5 * point.radius;
   if (!q.shape && (q.column == "amplitude_nm" || q.column == "middle_amplitude_nm")) point.passing = q.above;
   return point;

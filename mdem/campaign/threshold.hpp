@@ -79,7 +79,7 @@ struct PhasePoint {
   std::vector<Threshold> seeds;
   int tubes = 0;
   double length = 0, radius = 0;      // nm, of the rope; zero where it is none
-  std::optional<HelixTheory> theory;  // where the key is the moment of [twist]
+  std::optional<HelixTheory> theory;  // where the key is the moment at both ends
   double passing = 0;                 // nm, of the amplitude that is asked for; zero: it is another observable
 
   bool begun() const;  // has a run that ended

@@ -47,7 +47,7 @@ void say_source(const Scene& scene, const Prepared& p) {
 }
 
 void say_limits(const Scene& scene, const Prepared& p) {
-  const std::vector<Limits> all = watched_of(scene, p.topology, p.interaction.law.get()).limits;
+  const std::vector<Limits> all = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits;
   for (std::size_t type = 0; type < all.size(); ++type) {
     std::string text;
     for (const LimitKind& kind : limit_kinds())
@@ -82,7 +82,7 @@ int check_command(const std::string& path) {
   refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
   if (!scene.stops.empty()) {
-    const EnergyAccount none = account_of(scene, simulation, {}, 0);
+    const EnergyAccount none = account_of(simulation, {}, 0);
     refuse_stops_without_value(scene, log_row(make_observer(scene, p), scene, p.topology, p.state, none));
   }
   say_source(scene, p);

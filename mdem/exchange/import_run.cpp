@@ -17,6 +17,8 @@
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "scene/state_files.hpp"
+#include "scene/state_csv.hpp"
+#include "sim/dynamics/end_drives.hpp"
 #include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
@@ -86,9 +88,9 @@ class Import {
   void add(const State& state, const LammpsRow& from) {
     EnergyAccount account;
     account.time_step = prepared_.time_step;
-    if (const MomentRamp* ramp = scene_.moment_ramp()) account.moment = ramp->upper_moment_at(from.time);
-    account.potential = {from.stretch, from.shear, from.bend, from.twist, from.vdw,
-                         std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
+    account.moment = moment_at(end_drives(prepared_.loads, prepared_.topology), from.time);
+    account.potential = {from.stretch, from.shear, from.bend,
+                         from.twist,   from.vdw,   std::accumulate(from.terms.begin(), from.terms.end(), 0.0)};
     account.terms = term_readings(prepared_.interaction, from.terms, from.accounts);
     account.kinetic = from.kinetic;
     account.work = from.work;

@@ -51,7 +51,8 @@ std::vector<Observable>& table() {
       {"time_step_fs", "fs", "time step, a part of the whole one where the motion is fast", Group::load,
        [](const M& m) { return m.account.time_step / units::fs; }},
       {"moment_nN_nm", "nN nm",
-       "moment of the twist protocol: per tube or in total, as the scene gives it; left-handed: negative",
+       "moment about the axis that the scene prescribes at the ends, on each tube or in total as it says; "
+       "left-handed: negative",
        Group::load, [](const M& m) { return m.account.moment / units::nN_nm; }},
 
       {"torque_upper_nN_nm", "nN nm",

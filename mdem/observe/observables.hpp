@@ -19,7 +19,7 @@ namespace ropewalk {
 // Loads and energies at one time. Only the run itself knows them; frames do not store them.
 struct EnergyAccount {
   double time_step = 0;  // ps
-  double moment = 0;     // eV, of the twist protocol
+  double moment = 0;     // eV, prescribed at the ends
   Energies potential;
   double kinetic = 0;                        // eV
   double work = 0;                           // eV, done by the loads since the start

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <utility>
+
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -46,9 +48,10 @@ void add_rope_twist(const Prepared& p, double twist, SceneFeatures& f) {
   f.curvature += bend;
 }
 
-// Twist phi (rad/nm) of a rope in equilibrium, if `moment` M (eV) acts on each tube and the rope's length is free:
-// M = GJ phi + EA Var(rho^2) phi^3/2, rho the distance of a tube from the axis.
-double resting_twist(const Prepared& p, double moment, bool geometric_only) {
+// Twist phi (rad/nm) of a rope in equilibrium, if `moment` M (eV) acts on each tube, rho being the distance of a
+// tube from the axis: M = GJ phi + EA Var(rho^2) phi^3/2, with the mean of rho^4 for the variance where the length
+// is held.
+double resting_twist(const Prepared& p, double moment, bool relaxes_spins, bool length_held) {
   const BondStiffness& k = p.topology.types[0].bond;
   double mean = 0, mean2 = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
@@ -57,7 +60,7 @@ double resting_twist(const Prepared& p, double moment, bool geometric_only) {
     mean += rho2 / p.topology.tubes();
     mean2 += rho2 * rho2 / p.topology.tubes();
   }
-  const double cubic = geometric_only ? 0 : 0.5 * k.stretch * (mean2 - mean * mean);
+  const double cubic = relaxes_spins ? 0 : 0.5 * k.stretch * (mean2 - (length_held ? 0 : mean * mean));
   double low = 0, high = moment / k.twist;
   for (int step = 0; step < 60; ++step) {
     const double phi = 0.5 * (low + high);
@@ -66,71 +69,104 @@ double resting_twist(const Prepared& p, double moment, bool geometric_only) {
   return low;
 }
 
-void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
-  const BondStiffness& k = p.topology.types[0].bond;
-  if (load.force > 0) {
-    const double bend = load.force * f.length / k.bend;
-    f.curvature += bend;
-  }
-  if (load.torque != Vector3::Zero()) {
-    const double along = std::fabs(load.torque.z()) / k.twist, across = load.torque.head<2>().norm() / k.bend;
-    f.curvature += across;
-    if (along > 0) add_rope_twist(p, along, f);
-  }
-  if (load.twist > 0) add_rope_twist(p, load.twist, f);
-  const bool loaded = load.force > 0 || load.torque != Vector3::Zero();
-  f.sudden = f.sudden || (loaded && load.ramp <= 0);
-  f.ramp = std::max(f.ramp, load.ramp);
+// The longest of several courses tells when a limit is passed.
+void add_course(const Schedule& course, SceneFeatures& f) {
+  if (course.reaches() > f.course.reaches()) f.course = course;
 }
 
-// Adds the demands of clamps: pulling, bending, stretching where the rope is turned at a length that is held, and
-// the bending of tilted tubes where a clamp keeps them straight, over the length sqrt(EI/T), T the tension of a
-// tube.
-void add_clamps(const Prepared& p, SceneFeatures& f) {
+// A load on elements that are no ends.
+void add_load(const LoadEffect& load, const Prepared& p, SceneFeatures& f) {
   const BondStiffness& k = p.topology.types[0].bond;
-  EndElements clamped;
-  for (const auto& load : p.loads)
-    if (const auto effect = load->effect(); effect && effect->clamp) load->add_ends(clamped);
-  std::array<std::set<int>, 2> tubes;
-  for (const End end : {lower_end, upper_end})
-    for (const int e : clamped[end]) tubes[end].insert(p.topology.tube_of(e));
-  const bool between = std::any_of(tubes[lower_end].begin(), tubes[lower_end].end(),
-                                   [&](int t) { return tubes[upper_end].count(t) > 0; });
-  double pulled = 0, bent = 0, tension = 0;
-  bool held = between, straight = false;
-  for (const auto& load : p.loads) {
-    const std::optional<LoadEffect> effect = load->effect();
-    if (!effect || !effect->clamp) continue;
-    if (between) pulled += effect->clamp->pull;
-    bent += effect->clamp->bend;
-    tension = std::max(tension, effect->clamp->tension);
-    held = held && effect->clamp->keeps_length;
-    straight = straight || effect->clamp->keeps_tilt;
+  std::array<double, 6> most{};
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const LoadComponent& c = load.axes[axis];
+    if (c.is == LoadComponent::Is::free || c.is == LoadComponent::Is::held) continue;
+    add_course(c.course, f);
+    if (c.is == LoadComponent::Is::loaded) most[axis] = c.course.largest();
+    if (c.is == LoadComponent::Is::loaded && c.course.reaches() <= 0) f.sudden = true;
   }
-  f.between_clamps = between;
-  f.length_held = held;
+  f.curvature +=
+      Vector3(most[0], most[1], most[2]).norm() * f.length / k.bend + std::hypot(most[3], most[4]) / k.bend;
+  if (most[LoadEffect::about_z] > 0) add_rope_twist(p, most[LoadEffect::about_z] / k.twist, f);
+  if (const LoadComponent& turn = load.axes[LoadEffect::about_z];
+      turn.is == LoadComponent::Is::moved && turn.course.largest() > 0)
+    add_rope_twist(p, turn.course.largest() / f.length, f);
+}
+
+// Tubes of a film lie across z, where a force along z bends them.
+bool stand_upright(const State& s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) sum += std::fabs(axis_of(s.orientation[i]).z());
+  return sum > 0.5 * static_cast<double>(s.size());
+}
+
+// Forces and couples on each tube of an end. Two ends that are loaded balance one another, and the larger counts.
+void add_end_loads(const EndDrives& drives, const Prepared& p, SceneFeatures& f) {
+  const BondStiffness& k = p.topology.types[0].bond;
+  std::array<double, 6> most{};
+  for (std::size_t axis = 0; axis < 6; ++axis)
+    for (const End end : {lower_end, upper_end}) {
+      const Schedule course = load_of_each(drives, end, axis);
+      if (!(course.largest() > 0)) continue;
+      most[axis] = std::max(most[axis], course.largest());
+      add_course(course, f);
+      f.sudden = f.sudden || course.reaches() <= 0;
+    }
+  if (stand_upright(p.state)) std::swap(f.tension, most[LoadEffect::z]);
+  f.curvature +=
+      Vector3(most[0], most[1], most[2]).norm() * f.length / k.bend + std::hypot(most[3], most[4]) / k.bend;
+  f.strain += f.tension / k.stretch;
+  if (!(most[LoadEffect::about_z] > 0)) return;
+  const double turn_before = f.turn;
+  const std::optional<EndMoment> moment = end_moment(drives);
+  add_rope_twist(p, most[LoadEffect::about_z] / k.twist, f);
+  f.turn =
+      turn_before + resting_twist(p, most[LoadEffect::about_z], moment && moment->relaxes_spins, f.length_held);
+}
+
+// Displacements and rotations of one end against the other.
+void add_end_motion(const EndDrives& drives, const Prepared& p, SceneFeatures& f) {
+  double bent = 0;
+  for (const EndDrive& d : drives)
+    for (std::size_t axis = 3; axis < LoadEffect::about_z; ++axis)
+      if (d.does.axes[axis].is == LoadComponent::Is::moved) {
+        bent += d.does.axes[axis].course.largest();
+        add_course(d.does.axes[axis].course, f);
+      }
+  f.curvature += bent / f.length;
+  f.strain += rope_radius(p) * bent / f.length;
+  const Schedule turned = moved_apart(drives, LoadEffect::about_z), pulled = moved_apart(drives, LoadEffect::z);
+  add_course(turned, f);
+  add_course(pulled, f);
+  f.turned = turned.largest();
+  f.turning = turned.fastest();
+  const double length = p.topology.images > 0 ? p.topology.period : f.length;
+  if (f.turned > 0) add_rope_twist(p, f.turned / length, f);
+  if (!is_kept_between(drives, LoadEffect::z)) return;
   // Pressed ends strain a rope until it bends aside. A solid column between two clamps buckles at this strain
   // (Euler), and a rope of tubes that slide buckles earlier.
-  const double column = std::pow(units::pi * (rope_radius(p) + p.topology.largest_radius()) / f.length, 2);
-  f.strain +=
-      std::max(pulled, 0.0) / f.length + std::min(std::max(-pulled, 0.0) / f.length, column) + tension / k.stretch;
-  f.curvature += bent / f.length;
-  if (bent > 0) {
-    f.strain += rope_radius(p) * bent / f.length;
+  const double column = std::pow(units::pi * (rope_radius(p) + p.topology.largest_radius()) / f.length, 2),
+               part = pulled.largest() / f.length;
+  const bool presses = std::none_of(pulled.points().begin(), pulled.points().end(),
+                                    [](const Schedule::Point& point) { return point.value > 0; });
+  f.strain += presses ? std::min(part, column) : part;
+}
+
+// What a turned rope demands whose length is held, and the bending of tilted tubes where an end keeps them
+// straight, over the length sqrt(EI/T), T the tension of a tube.
+void add_demands_of_turn(const EndDrives& drives, const Prepared& p, SceneFeatures& f) {
+  if (f.tubes < 2 || !(f.turn > 0) || p.topology.images > 0) return;
+  const BondStiffness& k = p.topology.types[0].bond;
+  const double slope = rope_radius(p) * f.turn;
+  double tension = f.tension;
+  if (f.length_held) {
+    f.strain += std::sqrt(1 + slope * slope) - 1;
+    tension = std::max(tension, k.stretch * f.strain);
+    if (f.tubes > 6)
+      f.pressure = k.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) * std::pow(slope, 4) / 8;
   }
-  if (f.tubes > 1 && f.turn > 0) {
-    const double slope = rope_radius(p) * f.turn;
-    if (held) {
-      f.strain += std::sqrt(1 + slope * slope) - 1;
-      tension = std::max(tension, k.stretch * f.strain);
-      if (f.tubes > 6)
-        f.pressure = k.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) * std::pow(slope, 4) / 8;
-    }
-    if (straight) {
-      const double bend = slope * std::sqrt(tension / k.bend);
-      f.curvature = std::max(f.curvature, bend);
-    }
-  }
+  if (std::any_of(drives.begin(), drives.end(), [](const EndDrive& d) { return d.does.keeps_tilt; }))
+    f.curvature = std::max(f.curvature, slope * std::sqrt(tension / k.bend));
 }
 
 }  // namespace
@@ -141,22 +177,16 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   f.contact = p.interaction.has_contact() && f.tubes > 1;
   for (int t = 0; t < p.topology.tubes(); ++t) f.length = std::max(f.length, free_length(scene, p.topology, t));
   bond_features(p.topology, p.state, f);
-  for (const auto& load : p.loads) {
-    const std::optional<LoadEffect> effect = load->effect();
-    if (!effect) continue;
-    add_load(*effect, p, f);
-    f.turned += effect->angle;
-    f.turning += effect->turning;
-  }
-  if (f.turned > 0) add_rope_twist(p, f.turned / f.length, f);
-  add_clamps(p, f);
-  if (const MomentRamp* ramp = scene.moment_ramp()) {
-    const double each = ramp->of_each(f.tubes), turn_before = f.turn;
-    add_rope_twist(p, each / p.topology.types[0].bond.twist, f);
-    f.turn = turn_before + resting_twist(p, each, ramp->geometric_only);
-    f.sudden = f.sudden || ramp->rate <= 0;
-    f.ramp = ramp->ramp_time();
-  }
+  const EndDrives drives = end_drives(p.loads, p.topology);
+  f.turned_between = is_kept_between(drives, LoadEffect::about_z);
+  f.length_held = is_kept_between(drives, LoadEffect::z);
+  f.prescribes_moment = end_moment(drives).has_value();
+  for (const auto& load : p.loads)
+    if (const auto effect = load->effect(); effect && end_drives(*load, p.topology).empty())
+      add_load(*effect, p, f);
+  add_end_motion(drives, p, f);
+  add_end_loads(drives, p, f);
+  add_demands_of_turn(drives, p, f);
   if (scene.start.temperature > 0) {
     const TubeType& t = p.topology.types[0];
     const double kt = units::boltzmann * scene.start.temperature;

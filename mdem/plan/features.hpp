@@ -14,9 +14,14 @@ struct SceneFeatures {
   double strain = 0;                // of a tube, the largest expected
   double pressure = 0;              // eV/nm^3, on the innermost tube
   double turn = 0;                  // rad/nm, twist of the rope as a whole at mechanical equilibrium
-  double ramp = 0;                  // ps, in which it is turned
+  Schedule course;                  // of the load or motion that takes longest to become whole
   double turned = 0, turning = 0;   // rad and rad/ps, prescribed to an end against the other
-  bool between_clamps = false, length_held = false;  // tubes that clamps hold at both ends
+  double tension = 0;               // eV/nm, prescribed to a tube
+  // Whether both ends of some tube have a prescribed rotation, or a prescribed distance.
+  bool turned_between = false, length_held = false;
+  bool prescribes_moment = false;  // about the axis, at an end
+
+  double ramp() const { return course.reaches(); }  // ps
 };
 
 // Upper estimates: a twisting moment twists each tube as if no other held it, M/GJ; a force bends a tube that is

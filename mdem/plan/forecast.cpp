@@ -6,9 +6,8 @@
 
 #include "plan/features.hpp"
 #include "plan/sliding_rope.hpp"
-#include "scene/loads/periodic.hpp"
-#include "scene/loads/twist.hpp"
 #include "scene/watch.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -25,36 +24,10 @@ double expected(const SceneFeatures& f, const TubeType& type, double Limits::*li
 }
 
 // The shock goes as the square of the rate.
-std::string gentle_ramp(const Scene& scene, double part) {
-  const MomentRamp& ramp = *scene.moment_ramp();
-  if (!(ramp.rate > 0)) return "ramp the moment";
-  return fmt::format("a twist.rate_nN_nm_per_ps of {:.2g} would be gentle",
-                     ramp.rate * std::sqrt(part) / units::nN_nm);
-}
-
-// The prescribed turn of one end of a rope, or of a slice, against the other end.
-struct Turn {
-  double angle = 0, rate = 0, length = 0;  // rad, rad/ps, nm
-  bool length_held = false;
-};
-
-std::optional<Turn> turn_of(const Scene& scene, const Prepared& p) {
-  Turn turn;
-  if (const auto slices = scene.drives_of<PeriodicDrive>(); !slices.empty()) {
-    const PeriodicLoad& load = slices.front()->load;
-    turn.length = p.topology.period;
-    turn.length_held = load.tension.empty();
-    for (std::size_t k = 0; k < load.twist.size(); ++k) {
-      turn.angle = std::max(turn.angle, std::fabs(load.twist[k].value) * turn.length);
-      if (k > 0 && load.twist[k].time > load.twist[k - 1].time)
-        turn.rate = std::max(turn.rate, std::fabs(load.twist[k].value - load.twist[k - 1].value) * turn.length /
-                                            (load.twist[k].time - load.twist[k - 1].time));
-    }
-  } else if (const SceneFeatures f = features_of(scene, p); f.between_clamps) {
-    turn = {f.turned, f.turning, f.length, f.length_held};
-  }
-  if (!(turn.angle > 0 && turn.rate > 0)) return std::nullopt;
-  return turn;
+std::string gentle_ramp(const Prepared& p, double part) {
+  const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
+  if (!load || !(load->rate() > 0)) return "ramp the moment";
+  return fmt::format("a ramp of {:.2g} nN nm/ps would be gentle", load->rate() * std::sqrt(part) / units::nN_nm);
 }
 
 // By length: 1 where a strand is one tube.
@@ -69,33 +42,35 @@ double part_of_strand(const Topology& topology, int tube) {
 
 std::optional<std::string> helix_ahead(const Scene& scene, const Prepared& p) {
   const std::optional<HelixTheory> theory = helix_theory(scene, p);
-  const MomentRamp* load = scene.moment_ramp();
-  if (!theory || !load || load->moment <= theory->static_moment) return {};
+  const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
+  if (!theory || !load || load->largest() <= theory->static_moment) return {};
   std::string words = fmt::format(
       "By theory a straight rope of tubes that slide becomes a helix from {:.3g} nN nm on each tube on.",
       theory->static_moment / theory->tubes_in_unit / units::nN_nm);
   constexpr double winding = 1;
-  if (const double rate = theory->growth(load->moment, winding); rate > 0)
+  if (const double rate = theory->growth(load->largest(), winding); rate > 0)
     words += fmt::format(
         " Under {:.3g} nN nm its amplitude grows by a factor of e in {:.3g} ps, with {:.2g} turns, if the rope "
         "turns by ML/EI.",
-        load->of_each(p.topology.tubes()) / units::nN_nm, 1 / rate, theory->windings(load->moment, winding));
+        load->of_each(p.topology.tubes()) / units::nN_nm, 1 / rate, theory->windings(load->largest(), winding));
   return words;
 }
 
 double expected_shock(const Scene& scene, const Prepared& p) {
-  const double twist = twist_energy_of(scene, p.topology);
-  if (!(twist > 0) || scene.drives_of<TwistDrive>().empty() || !scene.source->is_parallel()) return 0;
-  const MomentRamp& ramp = *scene.moment_ramp();
-  if (!(ramp.rate > 0)) return 1;
-  const double rate = ramp.rate * ramp.of_each(p.topology.strands()) / ramp.moment;
+  const double twist = twist_energy_of(scene, p.topology, p.loads);
+  if (!(twist > 0) || !scene.source->is_parallel()) return 0;
+  const EndMoment load = end_moment(end_drives(p.loads, p.topology)).value();
+  if (!(load.rate() > 0)) return 1;
+  const double rate = load.rate() * load.of_each(p.topology.strands()) / load.largest();
+  const double spread =
+      load.balanced ? 24 : 6;  // the rope turns against its middle, or against the end that is held
   double kinetic = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
     const double rho2 =
         Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
     const double length = p.topology.length_of(t) * type.element_length, winds = length * rate / type.bond.twist;
-    kinetic += 4 * type.mass / type.element_length * rho2 * length * winds * winds / 24;
+    kinetic += 4 * type.mass / type.element_length * rho2 * length * winds * winds / spread;
   }
   return kinetic / twist;
 }
@@ -103,25 +78,27 @@ double expected_shock(const Scene& scene, const Prepared& p) {
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
   const SceneFeatures f = features_of(scene, p);
-  const Limits limits = watched_of(scene, p.topology, p.interaction.law.get()).limits.front();
+  const Limits limits = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits.front();
   for (const LimitKind& kind : limit_kinds()) {
     const bool shock = kind.limit == &Limits::shock;
     const double limit = limits.*kind.limit,
                  value = shock ? expected_shock(scene, p) : expected(f, p.topology.types[0], kind.limit);
     if (limit <= 0 || value <= limit) continue;
     const std::string unit = *kind.unit ? " " + std::string(kind.unit) : "";
-    const std::string when =
-        f.ramp > 0 && !shock ? fmt::format(", from about {:.3g} ps on", f.ramp * limit / value) : std::string();
+    const std::string when = f.ramp() > 0 && !shock
+                                 ? fmt::format(", from about {:.3g} ps on", f.course.reaches(limit / value))
+                                 : std::string();
     out.push_back(fmt::format("The load may bring {} to {:.3g}{}{}, beyond its limit of {:.3g}: {}; {}.", kind.key,
                               value / kind.unit_size, unit, when, limit / kind.unit_size, kind.consequence,
-                              shock ? gentle_ramp(scene, limit / value) : kind.remedy));
+                              shock ? gentle_ramp(p, limit / value) : kind.remedy));
   }
   return out;
 }
 
 std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
-  const std::optional<Turn> turn = turn_of(scene, p);
-  if (!turn) return std::nullopt;
+  const SceneFeatures f = features_of(scene, p);
+  if (!f.turned_between || !(f.turning > 0)) return std::nullopt;
+  const double length = p.topology.images > 0 ? p.topology.period : f.length;
   double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
@@ -134,12 +111,12 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
     second += part * type.bond.stretch * rho2;
     fourth += part * type.bond.stretch * rho2 * rho2;
   }
-  const double cubic = 0.5 * (turn->length_held ? fourth : fourth - second * second / stretch);
-  const double phi = turn->angle / turn->length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
+  const double cubic = 0.5 * (f.length_held ? fourth : fourth - second * second / stretch);
+  const double phi = f.turned / length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
   // The speed of rotation rises along the rope from zero at the held end to the whole rate at the turned one.
-  const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * turn->rate * turn->length : 0;
-  return QuasiStatic{p.topology.images > 0, turn->length * std::sqrt(inertia / twist), turn->angle / turn->rate,
-                     drag / torque, 0.5 * turn->rate * std::sqrt(twist * inertia) / torque};
+  const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * f.turning * length : 0;
+  return QuasiStatic{p.topology.images > 0, length * std::sqrt(inertia / twist), f.turned / f.turning,
+                     drag / torque, 0.5 * f.turning * std::sqrt(twist * inertia) / torque};
 }
 
 std::string words_of(const QuasiStatic& q) {

@@ -18,12 +18,12 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepar
 // the theory is not for this scene.
 std::optional<std::string> helix_ahead(const Scene& scene, const Prepared& prepared);
 
-// An upper estimate of limits.shock. Twist runs along a rope under [twist] as a wave. A rope whose moment M rises
-// slowly winds by ML/GJ, and a tube at the distance rho from the axis moves with the speed rho (L/GJ)(dM/dt)(s/L -
-// 1/2). The kinetic energy of this tube is m rho^2 L (L/GJ dM/dt)^2/24. The wave lags behind the moment and then
-// winds the rope up to twice as fast: the estimate is four times this energy, of all tubes, over the energy of
-// twist under the whole moment. 1: the moment acts at once. 0: not estimated. Case limit-shock compares runs with
-// the estimate.
+// An upper estimate of limits.shock. Twist runs along a rope under a moment at its ends as a wave. A rope whose
+// moment M rises slowly winds by ML/GJ, and a tube at the distance rho from the axis moves with the speed rho
+// (L/GJ)(dM/dt)(s/L - 1/2), or s/L where the other end is held. The kinetic energy of this tube is m rho^2 L (L/GJ
+// dM/dt)^2/24, or /6. The wave lags behind the moment and then winds the rope up to twice as fast: the estimate is
+// four times this energy, of all tubes, over the energy of twist under the whole moment. 1: the moment acts at
+// once. 0: not estimated. Case limit-shock compares runs with the estimate.
 double expected_shock(const Scene& scene, const Prepared& prepared);
 
 // How far a prescribed turn is from rest. Twist travels along a rope as a wave of the speed (K/J)^1/2, with the

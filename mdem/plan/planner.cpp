@@ -16,6 +16,7 @@
 #include "plan/sliding_rope.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -121,7 +122,7 @@ class Planner {
     std::vector<std::string> observables = request_.observables;
     if (observables.empty()) {
       observables = usual_observables();
-      if (scene_.moment_ramp())
+      if (features_.prescribes_moment)
         observables.erase(std::find(observables.begin(), observables.end(), "torque_upper_nN_nm"));
     }
     return outcome_of(end.log, observables, relaxed);
@@ -271,15 +272,16 @@ class Planner {
     if (!plan_.chosen.holds)
       plan_.remarks.push_back(fmt::format("No model that was tried holds {:g} %: this is the most accurate one.",
                                           100 * request_.error));
-    if (!plan_.pilots.empty() && scene_.moment_ramp() && scene_.source->is_parallel()) add_buckling();
+    if (!plan_.pilots.empty() && features_.prescribes_moment && scene_.source->is_parallel()) add_buckling();
     add_slice();
   }
 
   // Pilots that are shorter stay straight where the whole rope buckles.
   void add_buckling() {
-    const std::optional<HelixTheory> helix = helix_theory(scene_, prepare(scene_));
+    const Prepared p = prepare(scene_);
+    const std::optional<HelixTheory> helix = helix_theory(scene_, p);
     const double theory = helix ? helix->static_moment / helix->tubes_in_unit : 0;
-    if (helix && scene_.moment_ramp()->of_each(features_.tubes) > theory)
+    if (helix && end_moment(end_drives(p.loads, p.topology))->of_each(features_.tubes) > theory)
       plan_.remarks.push_back(
           fmt::format("The whole rope may buckle: tubes that slide do so from {:.3g} nN nm per tube on, by theory. "
                       "The promise is for the "
@@ -289,7 +291,9 @@ class Planner {
 
   // Whether the interior alone would do.
   void add_slice() {
-    if (scene_.kind != "rope" || !scene_.has_ends(Drive::Ends::clamped) || features_.turn <= 0) return;
+    if (scene_.kind != "rope" || scene_.has_ends(Drive::Ends::endless) || !features_.turned_between ||
+        features_.turn <= 0)
+      return;
     const double elements = elements_of(scene_),
                  slice = 3 * std::ceil(prepare(scene_).interaction.cutoff() / scene_.element_length);
     constexpr double much = 3;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
-#include "scene/loads/twist.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -22,27 +22,32 @@ double pair_stiffness(const ContactLaw& law, double element_length) {
 }
 
 [[noreturn]] void refuse(const Scene& scene, const char* key, const char* why) {
-  throw InputError(
-      {scene.path, 0, key}, why,
-      "take a [rope] of 7 tubes or more with a [twist] by couples on free ends, as `ropewalk new --kind "
-      "spindle` has it");
+  throw InputError({scene.path, 0, key}, why,
+                   "take a [rope] of 7 tubes or more with a couple on each tube at both ends, which are free "
+                   "otherwise, as [twist] "
+                   "of `ropewalk new --kind spindle` has it");
 }
 
 }  // namespace
 
 RestTheory rest_theory(const Scene& scene, const Prepared& p) {
-  const auto twists = scene.drives_of<TwistDrive>();
+  const EndDrives drives = end_drives(p.loads, p.topology);
+  const std::optional<EndMoment> load = end_moment(drives);
+  const EndFreedom ends = end_freedom(drives);
   const int tubes = p.topology.tubes();
   if (!scene.source->is_parallel() || tubes < 7) refuse(scene, scene.kind.c_str(), "is no rope of straight tubes");
   if (scene.sets.size() > 1) refuse(scene, "parameters", "are of more than one type of tubes");
-  if (twists.size() != 1) refuse(scene, "twist", "is missing");
+  if (!load) refuse(scene, "twist", "is missing");
   if (!p.interaction.law) refuse(scene, "contact.law", "is \"none\"");
-  const TwistLoad& load = twists.front()->load;
-  if (load.application == TwistLoad::Application::tangential)
+  if (load->by == LoadEffect::By::tangential)
     refuse(scene, "twist.application", "is \"tangential\": no couple winds the tubes");
-  if (load.geometric_only) refuse(scene, "twist.geometric_only", "has states of rest of its own");
-  if (load.unload_rate > 0)
-    refuse(scene, "twist.unload_rate_nN_nm_per_ps", "takes away the moment under which it rests");
+  if (load->by == LoadEffect::By::body)
+    refuse(scene, "grip", "turns the tubes of an end as one body: no couple winds them");
+  if (!load->balanced || !load->on_all) refuse(scene, "", "its ends have no opposite couples on all tubes");
+  if (ends.otherwise_driven || !ends.tilts || ends.sideways == EndFreedom::Sideways::held || !ends.one_element)
+    refuse(scene, "", "its ends are held or driven by more than couples");
+  if (load->relaxes_spins) refuse(scene, "twist.geometric_only", "has states of rest of its own");
+  if (!load->course.stays()) refuse(scene, "", "its ends lose the moment under which it rests");
   const TubeType& tube = p.topology.type_of(0);
   double moment_of_area = 0;  // S
   for (int t = 0; t < tubes; ++t) {
@@ -52,7 +57,7 @@ RestTheory rest_theory(const Scene& scene, const Prepared& p) {
   const double modulus = 2 / std::sqrt(3.0) * pair_stiffness(*p.interaction.law, tube.element_length);
   const double disc2 = tubes * std::sqrt(3.0) / 2 * p.spacing * p.spacing / units::pi;
   const double crowding = 9 * units::pi * modulus * std::pow(disc2, 3) / 384;
-  const double moment = load.hand() * load.of_each(tubes);
+  const double moment = load->hand() * load->of_each(tubes);
   return {moment / (tube.bond.bend + 2 * crowding / moment_of_area), moment / tube.bond.bend};
 }
 

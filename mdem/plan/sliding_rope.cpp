@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "observe/centre_line.hpp"
-#include "scene/loads/twist.hpp"
 #include "scene/source.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -224,10 +224,13 @@ double HelixTheory::winding_of(double turn, double moment) const {
 }
 
 std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& p) {
-  const auto twists = scene.drives_of<TwistDrive>();
-  if (!scene.source->is_parallel() || scene.sets.size() > 1 || twists.size() != 1) return {};
-  const TwistLoad& load = twists.front()->load;
-  if (load.application != TwistLoad::Application::couple || load.geometric_only) return {};
+  const EndDrives drives = end_drives(p.loads, p.topology);
+  const std::optional<EndMoment> load = end_moment(drives);
+  const EndFreedom ends = end_freedom(drives);
+  if (!scene.source->is_parallel() || scene.sets.size() > 1 || !load) return {};
+  if (!load->balanced || !load->on_all || load->by != LoadEffect::By::couple || load->relaxes_spins) return {};
+  if (ends.otherwise_driven || !ends.tilts || !ends.one_element) return {};
+  const bool lateral_free = ends.sideways == EndFreedom::Sideways::free;
   const int tubes = p.topology.tubes();
   const TubeType& tube = p.topology.type_of(0);
   const double a = tube.element_length;
@@ -249,12 +252,13 @@ std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& p) {
         rope.slip += viscosity.eta * viscosity.weight(std::sqrt(apart2 + k * k * a * a)) * apart2 / (2 * a * tubes);
     }
   }
-  out.tubes_in_unit = load.reading == MomentRamp::Reading::per_tube ? 1 : tubes;
+  out.tubes_in_unit = load->per_tube ? 1 : tubes;
   out.static_moment =
-      out.tubes_in_unit * (load.lateral_free ? rope.static_moment() : 2 * units::pi * rope.bend / rope.length);
-  out.grows = load.lateral_free && scene.damping.local == 0 && !scene.bath() && p.interaction.terms.empty();
-  out.rate = load.rate / out.tubes_in_unit;
-  out.hold = load.unload_rate > 0 ? load.hold : p.duration - load.ramp_time();
+      out.tubes_in_unit * (lateral_free ? rope.static_moment() : 2 * units::pi * rope.bend / rope.length);
+  out.grows = lateral_free && scene.damping.local == 0 && !scene.bath() && p.interaction.terms.empty();
+  const double ramp = load->ramp_time();
+  out.rate = ramp > 0 ? load->largest() / ramp / out.tubes_in_unit : 0;
+  out.hold = (load->course.stays() ? p.duration : load->course.leaves()) - ramp;
   out.first_amplitude = scene.start.half_waves == 1 ? 0.5 * scene.start.wave : 0;
   return out;
 }

@@ -52,7 +52,7 @@ struct SlidingRope {
   double moment_of_gain(double wanted, double winding, double rate, double hold) const;
 };
 
-// What theory says of a scene that is loaded by [twist].
+// What theory says of a scene whose ends are loaded by couples.
 struct HelixTheory {
   SlidingRope rope;
   double tubes_in_unit = 1;       // the moment of the scene over that of one tube
@@ -71,9 +71,10 @@ struct HelixTheory {
   // f, of a rope that turns by `turn` (rad) from end to end.
   double winding_of(double turn, double moment) const;
 };
-// None for scenes that are no straight rope of like tubes, or whose load is no couple on each tube. Rates are known
-// where the ends are free and what damps is the viscosity of the contacts. The first amplitude is half of
-// [start] wave_nm: a plane wave is the sum of two helices of opposite hand, one of which grows.
+// None for scenes that are no straight rope of like tubes, or whose ends have more or less than opposite couples on
+// each tube. Rates are known where the ends are free and what damps is the viscosity of the contacts. The first
+// amplitude is half of [start] wave_nm: a plane wave is the sum of two helices of opposite hand, one of which
+// grows.
 std::optional<HelixTheory> helix_theory(const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

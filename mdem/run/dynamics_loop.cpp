@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/error.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 
@@ -83,8 +84,9 @@ std::string DynamicsLoop::status() const {
   const double time = run_.moving.simulation.time();
   const LogRow& row = run_.last_row;
   std::string text = fmt::format("{:8.2f} ps", time);
-  if (const MomentRamp* ramp = run_.moving.scene.moment_ramp())
-    text += fmt::format("  moment {:5.1f} nN nm", ramp->upper_moment_at(time) / units::nN_nm);
+  const Simulation& moving = run_.moving.simulation;
+  if (const EndDrives drives = end_drives(moving.loads(), moving.topology()); end_moment(drives))
+    text += fmt::format("  moment {:5.1f} nN nm", moment_at(drives, time) / units::nN_nm);
   return text + fmt::format("  beta {:5.1f} deg  Q {}  twist {:.0f}  bend {:.0f}  vdW {:.0f} eV", row["beta_deg"],
                             row["Q"], row["twist_eV"], row["bend_eV"], row["vdw_eV"]);
 }

@@ -3,15 +3,15 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 
-EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const Energies& first,
-                         double first_energy) {
+EnergyAccount account_of(const Simulation& simulation, const Energies& first, double first_energy) {
   const State& s = simulation.state();
   EnergyAccount account;
   account.time_step = simulation.time_step() / simulation.divided();
-  if (const MomentRamp* ramp = scene.moment_ramp()) account.moment = ramp->upper_moment_at(s.time);
+  account.moment = moment_at(end_drives(simulation.loads(), simulation.topology()), s.time);
   account.potential = simulation.forces().energy;
   account.terms =
       term_readings(simulation.interaction(), simulation.forces().term_energy, simulation.term_accounts());

@@ -8,8 +8,7 @@
 namespace ropewalk {
 
 // Without the forces at the ends. `first`, `first_energy` (eV): potential and total energy at the start.
-EnergyAccount account_of(const Scene& scene, const Simulation& simulation, const Energies& first,
-                         double first_energy);
+EnergyAccount account_of(const Simulation& simulation, const Energies& first, double first_energy);
 
 // Throws InputError for a [[stop]] rule whose column has no value in the first row: it would never fire.
 void refuse_stops_without_value(const Scene& scene, const LogRow& first);
@@ -19,7 +18,7 @@ struct MovingScene {
 
   const State& state() const { return simulation.state(); }
   bool relaxes() const { return scene.run.mode == RunOptions::Mode::relax; }
-  EnergyAccount account() const { return account_of(scene, simulation, first, first_energy); }
+  EnergyAccount account() const { return account_of(simulation, first, first_energy); }
   EnergyParts energies() const;
   // All observables. Forces at the ends are means since the last row.
   LogRow row();

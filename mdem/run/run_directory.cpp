@@ -225,7 +225,7 @@ RopeObservation observe(const Observer& o, const Scene& scene, const Topology& t
 }
 
 Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Observer& o) {
-  Watched out = watched_of(scene, prepared.topology, prepared.interaction.law.get());
+  Watched out = watched_of(scene, prepared.topology, prepared.loads, prepared.interaction.law.get());
   if (o.loading.law && !o.loading.core.empty())
     out.pressures = [topology = prepared.topology, reference = o.loading](const State& state) {
       return tube_pressures(topology, state, reference);

@@ -6,11 +6,13 @@
 
 #include "io/grade.hpp"
 #include "model/self_contact.hpp"
+#include "observe/bending.hpp"
 #include "observe/centre_line.hpp"
 #include "run/run_directory.hpp"
 #include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/paper/law.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -86,6 +88,19 @@ void warn_of_no_centre_line(const Topology& topology, const State& state, std::v
                   opposed ? " The columns of the upper and the lower end mix both ends of the rope." : ""));
 }
 
+// Collapsed tubes twist on without end where nothing else holds the moment.
+void warn_of_collapsing_moment(const Scene& scene, const Prepared& p, std::vector<std::string>& warnings) {
+  const TubeType& type = p.topology.types.front();
+  const double most = largest_torque(type.bond, type.element_length);
+  const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
+  const double moment = load ? load->of_each(p.topology.strands()) : 0;
+  if (scene.bond.anharmonic && moment > most)
+    warnings.push_back(fmt::format(
+        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
+        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
+        moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
+}
+
 // Warns of a radius for Q that reaches the second shell of the packing.
 void warn_of_second_neighbours(const Scene& scene, double spacing, std::vector<std::string>& warnings) {
   const double typed = scene.observe.neighbour_radius, second = std::sqrt(3.0) * spacing;
@@ -133,6 +148,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
   if (scene.contact.legacy_torque)
     warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
   for (const auto& drive : scene.drives) drive->warn(scene, p.topology, p.loads, warnings);
+  warn_of_collapsing_moment(scene, p, warnings);
   if (scene.run.mass_scale != 1)
     warnings.push_back(
         fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",

@@ -118,15 +118,10 @@ struct Scene {
       for (const std::string& file : drive->files()) all.push_back(file);
     return all;
   }
-  // The value of the first drive that has one; null: none has.
-  const MomentRamp* moment_ramp() const { return first(&Drive::moment_ramp); }
-  const ThermostatOptions* bath() const { return first(&Drive::thermostat); }
-
- private:
-  template <class T>
-  const T* first(const T* (Drive::*of)() const) const {
+  // Null: there is none.
+  const ThermostatOptions* bath() const {
     for (const auto& drive : drives)
-      if (const T* found = ((*drive).*of)()) return found;
+      if (const ThermostatOptions* found = drive->thermostat()) return found;
     return nullptr;
   }
 };

@@ -1,14 +1,15 @@
 #include "scene/watch.hpp"
 
 #include "scene/scene_to_model.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 
-double twist_energy_of(const Scene& scene, const Topology& topology) {
-  const MomentRamp* ramp = scene.moment_ramp();
-  if (!ramp || ramp->geometric_only || topology.tubes() < 2 || scene.start.temperature > 0 || scene.bath())
-    return 0;
-  const double moment = ramp->of_each(topology.strands());
+double twist_energy_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads) {
+  if (topology.tubes() < 2 || scene.start.temperature > 0 || scene.bath()) return 0;
+  const std::optional<EndMoment> load = end_moment(end_drives(loads, topology));
+  if (!load || !load->twists() || load->relaxes_spins) return 0;
+  const double moment = load->of_each(topology.strands());
   double energy = 0;
   for (int t = 0; t < topology.tubes(); ++t) {
     const TubeType& type = topology.type_of(t);
@@ -17,12 +18,13 @@ double twist_energy_of(const Scene& scene, const Topology& topology) {
   return energy;
 }
 
-Watched watched_of(const Scene& scene, const Topology& topology, const ContactLaw* law) {
+Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads,
+                   const ContactLaw* law) {
   Watched out;
   const auto types = static_cast<int>(scene.sets.size());
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) out.rest.push_back(law->parallel_distance({i, j}, scene.element_length));
-  out.twist_energy = twist_energy_of(scene, topology);
+  out.twist_energy = twist_energy_of(scene, topology, loads);
   const std::vector<Validity> validity = validities(scene, topology);
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     Limits limits = default_limits(topology.types[type], validity[type]);

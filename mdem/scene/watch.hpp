@@ -9,9 +9,10 @@ namespace ropewalk {
 
 // eV: what the tubes of a rope hold by their twist under the whole moment of the scene, M^2 L/2GJ of each; 0: no
 // moment twists the scene, it is no rope, or heat moves it as well.
-double twist_energy_of(const Scene& scene, const Topology& topology);
+double twist_energy_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads);
 
 // `law`: that of the scene; null: none.
-Watched watched_of(const Scene& scene, const Topology& topology, const ContactLaw* law);
+Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads,
+                   const ContactLaw* law);
 
 }  // namespace ropewalk

@@ -268,7 +268,7 @@ TEST_F(Limits, ARelaxationIsRefinedAsWell) {
   // Fourteen bonds between the fifteen elements carry the couple, EI/a ((1 - 3 s) sin phi + 6 s sin phi/2).
   const ropewalk::BondStiffness bond =
       ropewalk::read_parameters(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-tersoff.toml").bond;
-  const double a = 0.5 * 1.3775870846515064, s = shear_share(bond, a), moment = 100 * ropewalk::units::nN_nm;
+  const double a = 0.5 * 1.3775870846515064, s = ropewalk::shear_share(bond, a), moment = 100 * ropewalk::units::nN_nm;
   double below = 0, above = 1;
   for (int k = 0; k < 60; ++k) {
     const double phi = 0.5 * (below + above);

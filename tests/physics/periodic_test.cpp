@@ -503,7 +503,9 @@ TEST(PeriodicSlice, CollapsesAsAnEndlessTubeDoes) {
     const double endless = set.validity.collapse_at(set.radius, 0);
     ASSERT_LT(endless, 0.95 * set.validity.collapse_at(set.radius, 60));
     EXPECT_EQ(slice.p.topology.types[0].bond.anharmonic.max_shear, endless);
-    EXPECT_EQ(watched_of(slice.scene, slice.p.topology, slice.p.interaction.law.get()).limits.at(0).wall_twist,
+    EXPECT_EQ(watched_of(slice.scene, slice.p.topology, slice.p.loads, slice.p.interaction.law.get())
+                  .limits.at(0)
+                  .wall_twist,
               endless);
     EXPECT_EQ(validities(slice.scene, slice.p.topology).at(0).twist_collapse, endless);
   }

@@ -32,6 +32,7 @@
 #include "scene/templates.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/paper/law.hpp"
+#include "sim/dynamics/end_drives.hpp"
 #include "sim/forces/forces.hpp"
 #include "unit/support.hpp"
 
@@ -328,7 +329,7 @@ TEST(SceneFile, EveryKeyReachesTheScene) {
   EXPECT_EQ(s.damping.contact.eta, 3);
   EXPECT_EQ(s.damping.bond.rate, 0.5);
   EXPECT_EQ(s.damping.local, 0.7);
-  ASSERT_TRUE(s.moment_ramp());
+  ASSERT_EQ(s.drives_of<TwistDrive>().size(), 1u);
   EXPECT_NEAR(twist_of(s).moment, 64 * units::nN_nm, 1e-12);
   EXPECT_NEAR(twist_of(s).ramp_time(), 128, 1e-12);
   EXPECT_EQ(twist_of(s).hold, 4);
@@ -528,7 +529,7 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
 TEST(SceneKeys, ARelaxationHasNoSpeedThatALimitCouldJudge) {
   const auto speed = [](const std::string& run_mode) {
     const Scene s = scene_from("[chain]\nelements = 5\n[limits]\nspeed_nm_per_ps = 0.1\n[run]\n" + run_mode);
-    return watched_of(s, empty_topology(s), contact_law(s).get()).limits.at(0).speed;
+    return watched_of(s, empty_topology(s), {}, contact_law(s).get()).limits.at(0).speed;
   };
   EXPECT_EQ(speed("mode = \"relax\"\n"), 0);
   EXPECT_EQ(speed("duration_ps = 1\n"), 0.1);
@@ -538,7 +539,7 @@ TEST(SceneKeys, StatedLimitsAreTheDefaults) {
   const std::string start = "[chain]\nelements = 5\n[run]\nduration_ps = 1\n";
   const auto limits = [&](const std::string& more) {
     const Scene s = scene_from(start + more);
-    return watched_of(s, empty_topology(s), contact_law(s).get()).limits.at(0);
+    return watched_of(s, empty_topology(s), {}, contact_law(s).get()).limits.at(0);
   };
   const Limits silent = limits(""), stated = limits("[limits]\n" + keys_of("limits", true));
   EXPECT_DOUBLE_EQ(silent.bend, stated.bend);
@@ -727,9 +728,10 @@ TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
   const std::string rope = "[rope]\ntubes = 1\nlength_nm = 13.56\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 2\nhold_ps = 3\n";
   Scene s = scene_from(rope + "unload_rate_nN_nm_per_ps = 1\nunloaded_ps = 5\nhand = \"left\"\n");
   const double times[] = {0, 1, 2, 5, 7, 9, 12}, moments[] = {0, 2, 4, 4, 2, 0, 0};
-  for (int k = 0; k < 7; ++k) EXPECT_NEAR(twist_of(s).moment_at(times[k]), moments[k] * units::nN_nm, 1e-12) << times[k];
-  EXPECT_NEAR(s.moment_ramp()->upper_moment_at(7), -2 * units::nN_nm, 1e-12) << "in the log";
+  for (int k = 0; k < 7; ++k)
+    EXPECT_NEAR(twist_of(s).moment_at(times[k]), moments[k] * units::nN_nm, 1e-12) << times[k];
   const Prepared p = prepare(s);
+  EXPECT_NEAR(moment_at(end_drives(p.loads, p.topology), 7), -2 * units::nN_nm, 1e-12) << "in the log";
   EXPECT_NEAR(p.duration, 14, 1e-9);
   std::vector<PointLoad> on;
   for (const auto& load : p.loads) load->add_forces(p.state, 7, on);

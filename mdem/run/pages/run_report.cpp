@@ -16,6 +16,7 @@
 #include "run/run_directory.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
+#include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 namespace {
@@ -149,7 +150,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (const std::string words = plan_words(dir, scene, m); !words.empty())
     in.error_bars.insert(in.error_bars.begin(), words);
-  if (const MomentRamp* ramp = scene.moment_ramp()) in.ramp_end_ps = ramp->ramp_time();
+  in.ramp_end_ps = whole_from(end_drives(p.loads, p.topology));
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;
   in.element_length = p.topology.longest_element();

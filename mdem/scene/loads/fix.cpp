@@ -35,6 +35,15 @@ LoadKind fix_kind() {
                              check_fix});
 }
 
+std::optional<LoadEffect> FixLoad::effect() const {
+  LoadEffect out;
+  const bool held[] = {x, y, z, rotation, rotation, rotation};
+  for (std::size_t k = 0; k < out.axes.size(); ++k)
+    if (held[k]) out.axes[k] = LoadComponent::held();
+  out.keeps_tilt = rotation;
+  return out;
+}
+
 void FixLoad::constrain(const Topology&, double, double, State& state) const {
   for (const int e : elements) {
     const auto i = static_cast<std::size_t>(e);

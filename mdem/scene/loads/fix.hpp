@@ -17,7 +17,7 @@ class FixLoad : public Load {
   std::shared_ptr<Load> copy() const override { return std::make_shared<FixLoad>(*this); }
   Order order() const override { return Order::fix; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
-  std::optional<LoadEffect> effect() const override { return LoadEffect{}; }
+  std::optional<LoadEffect> effect() const override;
 };
 
 }  // namespace ropewalk

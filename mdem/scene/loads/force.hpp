@@ -14,7 +14,8 @@ class ForceLoad : public Load {
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<ForceLoad>(*this); }
   void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
-  std::optional<LoadEffect> effect() const override { return LoadEffect{force.norm(), Vector3::Zero(), 0, 0}; }
+  std::shared_ptr<Load> opposite() const override { return std::make_shared<ForceLoad>(elements, -force); }
+  std::optional<LoadEffect> effect() const override { return constant_effect(force, Vector3::Zero()); }
 };
 
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 #include "model/contract.hpp"
 #include "scene/bounds.hpp"
 #include "scene/loads/drive_kind.hpp"
+#include "scene/loads/end_moment.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"
@@ -275,7 +276,7 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, do
     ROPEWALK_EXPECTS(!axes[k].strain || free_length > 0);
     std::vector<Schedule::Point> points = axes[k].points;
     for (Schedule::Point& p : points)
-      if (axes[k].strain) p.value *= end == upper_end ? free_length : -free_length;
+      if (axes[k].strain) p.value *= (end == upper_end ? free_length : -free_length) * (both ? 0.5 : 1);
     out.schedules_[k] = Schedule(points, smooth < 0 ? 2 * sound : smooth);
   }
   return out;
@@ -289,34 +290,32 @@ std::string GripLoad::needs_time() const {
   return "";
 }
 
-// Upper bounds of the force and the moments on one element.
 std::optional<LoadEffect> GripLoad::effect() const {
   LoadEffect out;
-  const double shared = each ? depth : static_cast<double>(elements.size());
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    const double most = schedules_[k].largest();
-    if (axes[k].is == Is::loaded && k < z) out.force = std::max(out.force, most / shared);
-    if (axes[k].is == Is::loaded && k >= 3) out.torque[static_cast<Eigen::Index>(k - 3)] = most / shared;
+    LoadComponent& c = out.axes[k];
+    c.is = axes[k].is;
+    c.each = each;
+    if (c.is != Is::moved && c.is != Is::loaded) continue;
+    c.course = Schedule(schedules_[k].points());
+    c.now = [schedule = schedules_[k]](double time) { return schedule.value(time); };
   }
-  if (axes[about_z].is == Is::moved) {
-    out.angle = schedules_[about_z].largest();
-    out.turning = schedules_[about_z].fastest();
-  }
-  out.ramp = lasts();
-  LoadEffect::Clamp clamp;
-  const double tubes = each ? 1 : static_cast<double>(elements.size()) / depth;
-  if (axes[z].is == Is::moved) {
-    const double outwards = end == upper_end || axes[z].strain ? 1 : -1;
-    const bool presses = std::all_of(axes[z].points.begin(), axes[z].points.end(),
-                                     [&](const Schedule::Point& p) { return outwards * p.value <= 0; });
-    clamp.pull = presses ? -schedules_[z].largest() : schedules_[z].largest();
-  }
-  if (axes[z].is == Is::loaded) clamp.tension = schedules_[z].largest() / tubes;
-  for (const std::size_t about : {std::size_t{3}, std::size_t{4}})
-    if (axes[about].is == Is::moved) clamp.bend += schedules_[about].largest();
-  clamp.keeps_length = axes[z].is != Is::free && axes[z].is != Is::loaded && !slide_free;
-  clamp.keeps_tilt = !tilt_free;
-  out.clamp = clamp;
+  if (slide_free) out.axes[z].is = Is::free;
+  if (each && spin_free) out.axes[about_z].is = Is::free;
+  if (each && tilt_free) out.axes[3].is = out.axes[4].is = Is::free;
+  out.by = each && depth == 1 ? LoadEffect::By::couple : LoadEffect::By::body;
+  out.by_element = false;
+  out.keeps_tilt = each ? out.axes[3].is_kept() || out.axes[4].is_kept() : !tilt_free;
+  return out;
+}
+
+// A strain is positive where the clamp pulls, at either end.
+GripLoad GripLoad::at_other_end() const {
+  GripLoad out = *this;
+  out.end = end == upper_end ? lower_end : upper_end;
+  for (GripAxis& axis : out.axes)
+    if (!axis.strain)
+      for (Schedule::Point& p : axis.points) p.value = 0 - p.value;
   return out;
 }
 
@@ -342,7 +341,10 @@ std::string GripLoad::words() const {
     if (most > std::fabs(last)) rest += fmt::format(" by way of {:.4g}", most / unit);
     if (a.points.size() > 1) rest += fmt::format(" in {:.4g} ps", a.points.back().time);
   }
-  std::string text = fmt::format("{} grip, {}: ", end == upper_end ? "upper" : "lower",
+  std::string text = fmt::format("{}, {}: ",
+                                 both ? "grips at both ends, the lower one with the opposite motion and load"
+                                 : end == upper_end ? "upper grip"
+                                                    : "lower grip",
                                  each ? "a clamp for each tube" : "one disc");
   const auto is_held = [](const GripAxis& a) { return a.is == Is::held; };
   text += held.empty() ? "nothing held" : std::all_of(axes.begin(), axes.end(), is_held) ? "held" : held + " held";
@@ -483,8 +485,15 @@ const KeyTable<GripLoad>& table_of_grip() {
   static const KeyTable<GripLoad> table = {
       "grip",
       "any number of these: one end in a clamp; what is not said is held",
-      {Key::word("end", Words<End>{{"lower", lower_end}, {"upper", upper_end}}, &GripLoad::end,
-                 required("\"upper\""), "\"lower\": the first elements; \"upper\": the last ones"),
+      {Key::custom(
+           "end", "", required("\"upper\""),
+           "\"lower\": the first elements; \"upper\": the last ones; \"both\": what is said holds for the "
+           "upper ones, and the lower ones have the opposite motion and load; a strain is that of both together",
+           [](const TomlTable& t, const Scene&, GripLoad& grip) {
+             const int word = t.word("end", Words<int>{{"lower", 0}, {"upper", 1}, {"both", 2}});
+             grip.end = word == 0 ? lower_end : upper_end;
+             grip.both = word == 2;
+           }),
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
                  "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
        Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
@@ -555,13 +564,18 @@ std::string GripDrive::words() const {
 
 void GripDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
                           LoadsAndConstraints& loads) const {
+  loads.add(at(load, scene, topology));
+  if (load.both) loads.add(at(load.at_other_end(), scene, topology));
+}
+
+GripLoad GripDrive::at(const GripLoad& grip, const Scene& scene, const Topology& topology) const {
   std::vector<int> elements;
   double free = 0;
   const Topology strands = strands_of(topology);
   for (const int t : selected_tubes(scene, on, topology)) {
     // "all" means the tubes at this end of the rope. A tube named by its number is held at its own end, also inside
     // the rope.
-    if (on.all_tubes && !(load.end == lower_end ? topology.begins_strand(t) : topology.ends_strand(t))) continue;
+    if (on.all_tubes && !(grip.end == lower_end ? topology.begins_strand(t) : topology.ends_strand(t))) continue;
     const int length = topology.length_of(t);
     free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));
     const bool both = topology.begins_strand(t) && topology.ends_strand(t);
@@ -569,16 +583,17 @@ void GripDrive::add_loads(const Scene& scene, const Topology& topology, const In
       throw InputError({scene.path, 0, "grip.elements"},
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),
                        "leave half of each tube to the other end");
-    const int first = load.end == lower_end ? 0 : length - load.depth;
+    const int first = grip.end == lower_end ? 0 : length - load.depth;
     for (int e = 0; e < load.depth; ++e) elements.push_back(topology.tube_begin[t] + first + e);
   }
-  loads.add(load.on_elements(std::move(elements), topology, free));
+  return grip.on_elements(std::move(elements), topology, free);
 }
 
 // Elements that two grips hold, and loads that nothing feels. The first grip looks at all.
 void GripDrive::refuse_start(const Scene& scene, const Topology& topology, const State& state,
                              const LoadsAndConstraints& loads) const {
   if (scene.drives_of<GripDrive>().front() != this) return;
+  refuse_end_moment(scene, topology, loads, "grip.about_z");
   std::vector<int> held;
   for (const GripLoad* grip : loads.of<GripLoad>()) {
     for (const int e : grip->elements) {

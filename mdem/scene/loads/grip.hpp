@@ -22,7 +22,7 @@ namespace ropewalk {
 inline constexpr const char* grip_axis_names[] = {"x", "y", "z", "about_x", "about_y", "about_z"};
 
 struct GripAxis {
-  enum class Is { held, free, moved, loaded };
+  using Is = LoadComponent::Is;
   Is is = Is::held;
   std::vector<Schedule::Point> points;  // nm or rad where it is moved, eV/nm or eV where it is loaded
   bool strain = false;                  // the values are strains of the tubes, positive where the clamp pulls
@@ -33,6 +33,7 @@ class GripLoad : public Load {
   static constexpr std::size_t z = 2, about_z = 5;
 
   End end = upper_end;           // first or last elements
+  bool both = false;             // the other end does the opposite
   bool each = false;             // a clamp for each tube
   int depth = 1;                 // elements of each tube in the clamp
   std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
@@ -58,6 +59,8 @@ class GripLoad : public Load {
   void add_ends(EndElements& ends) const override {
     ends[end].insert(ends[end].end(), elements.begin(), elements.end());
   }
+  GripLoad at_other_end() const;  // with the opposite motion and load
+  std::shared_ptr<Load> opposite() const override { return std::make_shared<GripLoad>(at_other_end()); }
   double lasts() const;  // ps, to the end of the last schedule
 
  private:
@@ -89,10 +92,15 @@ class GripDrive : public Drive {
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::clamped; }
-  int held(End end, int tube) const override { return load.end == end && on.has_tube(tube) ? load.depth : 0; }
+  int held(End end, int tube) const override {
+    return (load.both || load.end == end) && on.has_tube(tube) ? load.depth : 0;
+  }
   std::string why_not_lengthened() const override {
     return load.depth > 1 ? "a grip holds several elements of each tube" : "";
   }
+
+ private:
+  GripLoad at(const GripLoad& grip, const Scene&, const Topology&) const;
 };
 
 }  // namespace ropewalk

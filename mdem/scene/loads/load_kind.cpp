@@ -7,6 +7,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/loads/drive_kind.hpp"
+#include "scene/loads/end_moment.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
@@ -84,24 +85,33 @@ void read_elements(const TomlTable& t, const Scene& scene, Selection& on) {
     on.elements = read_indices(t, "elements", "element", -long{max_elements}, sizes.elements);
     return;
   }
-  on.all_elements = t.word("elements", Words<bool>{{"all", true}, {"ends", false}});
+  enum class Which { all, ends, opposite_ends };
+  const Which which =
+      t.word("elements",
+             Words<Which>{{"all", Which::all}, {"ends", Which::ends}, {"opposite-ends", Which::opposite_ends}});
+  on.all_elements = which == Which::all;
+  on.opposite_ends = which == Which::opposite_ends;
   if (!on.all_elements) on.elements = {0, -1};
 }
 
 // The keys of all loads.
 KeyTable<Selection> selection_table() {
   using Key = KeyOf<Selection>;
-  return {"load",
-          "any number of these: what else acts on elements",
-          {Key::custom("kind", "", required("\"fix\""), kind_names(),
-                       [](const TomlTable& t, const Scene&, Selection&) { read_kind(t); }),
-           Key::custom("tubes", "", standard("\"all\""), "\"all\" or numbers from 0: [0, 3]", read_tube_selection),
-           Key::custom("elements", "", required("\"ends\""),
-                       "\"all\", \"ends\" or numbers from 0, negative from the end", read_elements)
-               .that_numbers_elements()},
-          {},
-          Selection(),
-          true};
+  return {
+      "load",
+      "any number of these: what else acts on elements",
+      {Key::custom("kind", "", required("\"fix\""), kind_names(),
+                   [](const TomlTable& t, const Scene&, Selection&) { read_kind(t); }),
+       Key::custom("tubes", "", standard("\"all\""), "\"all\" or numbers from 0: [0, 3]", read_tube_selection),
+       Key::custom(
+           "elements", "", required("\"ends\""),
+           "\"all\", \"ends\", \"opposite-ends\" (the first element has the opposite of the last one's load) or "
+           "numbers from 0, negative from the end",
+           read_elements)
+           .that_numbers_elements()},
+      {},
+      Selection(),
+      true};
 }
 
 }  // namespace
@@ -163,6 +173,10 @@ DriveKind load_drive() {
             drive->on = selection_table().read(t, scene);
             drive->kind = read_kind(t);
             drive->load = drive->kind.read(t, scene);
+            if (drive->on.opposite_ends && !drive->load->opposite())
+              throw t.error("elements",
+                            fmt::format("is \"opposite-ends\", and \"{}\" has no opposite", drive->kind.name),
+                            "take \"ends\"");
             return drive;
           }};
 }
@@ -175,18 +189,38 @@ SceneTable LoadDrive::table() const {
 
 std::string LoadDrive::words() const {
   return fmt::format("load: {} on {} of {}", kind.name,
-                     on.all_elements ? "all elements" : fmt::format("{} elements", on.elements.size()),
+                     on.all_elements    ? "all elements"
+                     : on.opposite_ends ? "opposite ends"
+                                        : fmt::format("{} elements", on.elements.size()),
                      on.all_tubes ? "every tube" : fmt::format("each of {} tubes", on.tubes.size()));
 }
 
 void LoadDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction&,
                           LoadsAndConstraints& loads) const {
-  const std::shared_ptr<Load> acting = load->copy();
-  acting->elements = selected_elements(scene, on, topology);
-  loads.add(std::shared_ptr<const Load>(acting));
+  const auto add = [&](const std::shared_ptr<Load>& acting, const Selection& on_these) {
+    acting->elements = selected_elements(scene, on_these, topology);
+    loads.add(std::shared_ptr<const Load>(acting));
+  };
+  if (!on.opposite_ends) {
+    add(load->copy(), on);
+    return;
+  }
+  Selection one_end = on;
+  one_end.elements = {-1};
+  add(load->copy(), one_end);
+  one_end.elements = {0};
+  add(load->opposite(), one_end);
 }
 
-// A load that prescribes motion holds elements: the function counts the consecutive ones from this end of the tube on.
+void LoadDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
+                             const LoadsAndConstraints& loads) const {
+  const auto effect = load->effect();
+  if (effect && effect->axes[LoadEffect::about_z].is == LoadComponent::Is::loaded)
+    refuse_end_moment(scene, topology, loads, "load.torque_nN_nm");
+}
+
+// A load that prescribes motion holds elements: the function counts the consecutive ones from this end of the tube
+// on.
 int LoadDrive::held(End end, int tube) const {
   if (on.all_elements || !on.has_tube(tube) || load->order() == Load::Order::force) return 0;
   const auto has = [&](int e) { return std::find(on.elements.begin(), on.elements.end(), e) != on.elements.end(); };

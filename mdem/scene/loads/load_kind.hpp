@@ -54,6 +54,7 @@ struct Selection {
   bool all_tubes = true;
   std::vector<int> tubes;
   bool all_elements = false;
+  bool opposite_ends = false;  // the first element of a tube has the opposite of the load of the last one
   std::vector<int> elements;
 };
 
@@ -68,6 +69,7 @@ class LoadDrive : public Drive {
   std::string words() const override;
   std::string needs_time() const override { return load->needs_time(); }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
+  void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   std::string why_not_lengthened() const override;
   bool holds_elements() const override { return !on.all_elements; }
   int held(End end, int tube) const override;

@@ -162,8 +162,11 @@ void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndC
 
 std::optional<LoadEffect> PeriodicLoad::effect() const {
   LoadEffect out;
-  out.twist = schedule_.largest();
-  out.ramp = schedule_.ends();
+  out.axes[LoadEffect::about_z] =
+      LoadComponent::follows(LoadComponent::Is::moved, sum_of({{period_, schedule_}}), false);
+  if (tension.empty()) out.axes[LoadEffect::z] = LoadComponent::held(false);
+  out.by = LoadEffect::By::body;
+  out.between_ends = true;
   return out;
 }
 

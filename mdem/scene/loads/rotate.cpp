@@ -35,8 +35,14 @@ LoadKind rotate_kind() {
 }
 
 std::optional<LoadEffect> PrescribedRotation::effect() const {
-  LoadEffect out{0, Vector3::Zero(), std::fabs(angle), rate != 0 ? angle / rate : 0.0};
-  out.turning = std::fabs(rate);
+  LoadEffect out;
+  for (const std::size_t axis : {0, 1, 3, 4}) out.axes[axis] = LoadComponent::held(false);
+  if (!axial_free) out.axes[LoadEffect::z] = LoadComponent::held();
+  if (angle / rate > 0)
+    out.axes[LoadEffect::about_z] =
+        LoadComponent::follows(LoadComponent::Is::moved, Schedule({{0, 0}, {angle / rate, angle}}), false);
+  out.by = LoadEffect::By::body;
+  out.keeps_tilt = true;
   return out;
 }
 

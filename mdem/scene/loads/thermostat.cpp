@@ -79,9 +79,6 @@ void ThermostatDrive::refuse(const TomlTable& top, const Scene& scene) const {
   };
   if (scene.run.mode == RunOptions::Mode::relax) refuse("run", "mode", "a relaxation has no temperature");
   if (scene.damping.local > 0) refuse("damping", "pfc_local", "it brakes every velocity that the bath gives");
-  for (const auto& drive : scene.drives)
-    if (drive->moment_ramp() && drive->moment_ramp()->geometric_only)
-      refuse(drive->table().name, "geometric_only", "the bath turns the spins that it relaxes");
 }
 
 }  // namespace ropewalk

@@ -14,7 +14,8 @@ class TorqueLoad : public Load {
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<TorqueLoad>(*this); }
   void add_forces(const State&, double time, std::vector<PointLoad>& out) const override;
-  std::optional<LoadEffect> effect() const override { return LoadEffect{0, torque, 0, 0}; }
+  std::shared_ptr<Load> opposite() const override { return std::make_shared<TorqueLoad>(elements, -torque); }
+  std::optional<LoadEffect> effect() const override { return constant_effect(Vector3::Zero(), torque); }
 };
 
 }  // namespace ropewalk

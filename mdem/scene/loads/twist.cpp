@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "model/error.hpp"
-#include "observe/bending.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
 #include "scene/loads/drive_kind.hpp"
+#include "scene/loads/end_moment.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {
@@ -93,27 +93,6 @@ Vector3 direction_of_couple(TwistLoad::Application application, const Vector3& a
   }
 }
 
-// A couple on the last element of a tube goes through its last bond. A single tube bears it in every bond.
-void refuse_moment(const Scene& scene, const Topology& topology, const TwistLoad& twist) {
-  const bool per_tube = twist.reading == TwistLoad::Reading::per_tube;
-  const double moment = twist.of_each(topology.strands());
-  const TubeType& t = topology.type_of(0);
-  const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
-  const auto refuse = [&](const std::string& what, const char* remedy) {
-    throw InputError({scene.path, 0, "twist.moment_nN_nm"},
-                     fmt::format("{:.4g} nN nm{} are more than {}", twist.moment / units::nN_nm,
-                                 per_tube ? "" : " in total", what),
-                     remedy);
-  };
-  if (moment > slip)
-    refuse(fmt::format("{}a bond of {:.4g} nm bears before it slips, GJ/a = {:.4g}",
-                       per_tube ? "" : fmt::format("the {} tubes bear: of each, ", topology.strands()),
-                       t.element_length, slip / units::nN_nm),
-           "lower the moment or take shorter elements");
-  if (topology.tubes() == 1 && moment > most)
-    refuse(fmt::format("the tube bears, {:.4g}: its wall collapses", most / units::nN_nm), "lower the moment");
-}
-
 }  // namespace
 
 // --- the drive -------------------------------------------------------------------------------------------------
@@ -149,6 +128,10 @@ void TwistDrive::refuse(const TomlTable& top, const Scene& scene) const {
   if (scene.run.mode == RunOptions::Mode::relax)
     throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
                     "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
+  if (load.geometric_only && scene.bath())
+    throw top.table("twist").error("geometric_only",
+                                   "does not go with [thermostat]: the bath turns the spins that it relaxes",
+                                   "take one of the two away");
 }
 
 std::string TwistDrive::needs_time() const {
@@ -156,7 +139,7 @@ std::string TwistDrive::needs_time() const {
 }
 
 void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
-                              const LoadsAndConstraints&) const {
+                              const LoadsAndConstraints& loads) const {
   if (load.application == TwistLoad::Application::tangential && topology.tubes() == 1)
     throw InputError({scene.path, 0, "twist.application"},
                      "tangential forces about the axis of one tube have no arm", "take \"couple\"");
@@ -164,19 +147,7 @@ void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, cons
     if (topology.length_of(t) < 2)
       throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
                        "take tubes of two elements or more");
-  if (load.application != TwistLoad::Application::tangential) refuse_moment(scene, topology, load);
-}
-
-// Collapsed tubes twist on without end where nothing else holds the moment.
-void TwistDrive::warn(const Scene& scene, const Topology& topology, const LoadsAndConstraints&,
-                      std::vector<std::string>& warnings) const {
-  const TubeType& type = topology.types.front();
-  const double most = largest_torque(type.bond, type.element_length);
-  if (scene.bond.anharmonic && load.moment > most)
-    warnings.push_back(fmt::format(
-        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
-        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
-        load.moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
+  refuse_end_moment(scene, topology, loads, "twist.moment_nN_nm");
 }
 
 std::optional<std::vector<std::pair<std::string, double>>> TwistDrive::hastened(double part) const {
@@ -196,6 +167,35 @@ TwistLoad TwistLoad::on_grip(std::vector<int> grip, double sign_there) const {
   there.elements = std::move(grip);
   there.sign = sign_there;
   return there;
+}
+
+std::optional<LoadEffect> TwistLoad::effect() const {
+  const double ramp = ramp_time(), held = ramp + hold, to = sign * moment;
+  std::vector<Schedule::Point> points;
+  const auto add = [&](double time, double value) {
+    if (points.empty() || time > points.back().time) points.push_back({time, value});
+  };
+  if (ramp > 0) add(0, 0);
+  add(ramp, to);
+  if (unload_rate > 0) {
+    add(held, to);
+    add(held + unload_time(), 0);
+  }
+  LoadEffect out;
+  LoadComponent& turn = out.axes[LoadEffect::about_z];
+  turn =
+      LoadComponent::follows(LoadComponent::Is::loaded, Schedule(std::move(points)), reading == Reading::per_tube);
+  turn.now = [load = *this](double time) {
+    return load.sign > 0 ? load.moment_at(time) : 0 - load.moment_at(time);
+  };
+  if (!lateral_free) out.axes[0] = out.axes[1] = LoadComponent::held(false);
+  if (!axial_free) out.axes[LoadEffect::z] = LoadComponent::held();
+  using By = LoadEffect::By;
+  out.by = application == Application::couple       ? By::couple
+           : application == Application::tangential ? By::tangential
+                                                    : By::turning_couple;
+  out.relaxes_spins = geometric_only;
+  return out;
 }
 
 void TwistLoad::keep(const std::vector<std::size_t>& places, const LoadProcesses& others) {

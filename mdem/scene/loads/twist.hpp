@@ -22,15 +22,34 @@
 
 namespace ropewalk {
 
-class TwistLoad : public Load, public MomentRamp {
+class TwistLoad : public Load {
  public:
   enum class Application { couple, follower, conservative, tangential };
-  double unloaded = 0;     // ps without a moment, at the end
+  enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
+  double moment = 0;                       // eV, in its reading, at the end of the ramp
+  double rate = 0;                         // eV/ps; 0: it acts at once
+  double hold = 0;                         // ps after the ramp
+  double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays
+  double unloaded = 0;                     // ps without a moment, at the end
+  Reading reading = Reading::per_tube;
+  bool left_handed = false;     // it turns the upper end to the left
+  bool geometric_only = false;  // spins are relaxed, so that no bond holds the moment by its twist
   Application application = Application::couple;
   bool lateral_free = true;
   bool axial_free = true;
   double increment = 1.0;  // ps between relaxations of every spin, where the twist is geometric only
   double sign = 1;         // of the moment: + on the upper grip, - on the lower
+
+  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
+  double unload_time() const { return unload_rate > 0 ? moment / unload_rate : 0.0; }  // ps
+  // eV, without a sign.
+  double moment_at(double time) const {
+    if (const double unloading = time - ramp_time() - hold; unload_rate > 0 && unloading > 0)
+      return unload_rate * unloading < moment ? moment - unload_rate * unloading : 0;
+    const double ramped = rate > 0 ? rate * time : moment;
+    return ramped < moment ? ramped : moment;
+  }
+  double hand() const { return left_handed ? -1 : 1; }
 
   TwistLoad on_grip(std::vector<int> grip, double sign_there) const;
 
@@ -40,6 +59,7 @@ class TwistLoad : public Load, public MomentRamp {
   void constrain(const Topology&, double time, double ahead, State&) const override;
   double spin_relaxation_interval() const override { return geometric_only ? increment : 0.0; }
   void keep(const std::vector<std::size_t>& places, const LoadProcesses& others) override;
+  std::optional<LoadEffect> effect() const override;
 
  private:
   double count_of_all() const { return all_ > 0 ? all_ : static_cast<double>(elements.size()); }
@@ -71,9 +91,7 @@ class TwistDrive : public Drive {
     add_twist(load, topology, loads);
   }
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
-  void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
   Ends ends() const override { return Ends::loaded; }
-  const MomentRamp* moment_ramp() const override { return &load; }
   std::string not_for_lammps() const override { return load.geometric_only ? "twist.geometric_only" : ""; }
   std::optional<std::vector<std::pair<std::string, double>>> hastened(double part) const override;
 };

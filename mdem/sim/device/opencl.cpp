@@ -13,10 +13,11 @@
 #include <sstream>
 #include <vector>
 
+#include "model/bond.hpp"
 #include "sim/device/kernel_text.hpp"
-#include "sim/device/types.h"
 
 namespace ropewalk {
+#include "sim/device/types.h"
 namespace {
 
 // The functions of OpenCL's library, which is opened once and stays.

@@ -10,6 +10,15 @@ void Load::keep(const std::vector<std::size_t>& places, const LoadProcesses&) {
   elements = chosen(elements, places);
 }
 
+LoadEffect constant_effect(const Vector3& force, const Vector3& couple) {
+  LoadEffect out;
+  for (std::size_t k = 0; k < out.axes.size(); ++k) {
+    const double value = k < 3 ? force[static_cast<Eigen::Index>(k)] : couple[static_cast<Eigen::Index>(k - 3)];
+    if (value != 0) out.axes[k] = LoadComponent::follows(LoadComponent::Is::loaded, Schedule::always(value));
+  }
+  return out;
+}
+
 void LoadsAndConstraints::add(std::shared_ptr<const Load> load) {
   ROPEWALK_EXPECTS(load != nullptr);
   const auto behind =

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/dynamics/schedule.hpp"
 #include "sim/forces/forces.hpp"
 #include "sim/state/processes.hpp"
 #include "sim/state/state.hpp"
@@ -25,25 +27,40 @@ struct PointLoad {
 enum End : std::size_t { lower_end, upper_end };
 using EndElements = std::array<std::vector<int>, 2>;  // of the lower and of the upper end
 
-// Upper bounds of what a load does, known before it is run.
-struct LoadEffect {
-  // A clamp about the ends of tubes.
-  struct Clamp {
-    double pull = 0;           // nm, along the rope
-    double tension = 0;        // eV/nm on one tube
-    double bend = 0;           // rad, about axes across the rope
-    bool keeps_length = true;  // where both ends are clamped
-    bool keeps_tilt = true;    // of the tubes in it
-  };
+// One component of what a load does to its elements, known before it is run.
+struct LoadComponent {
+  enum class Is { free, held, moved, loaded };
 
-  double force = 0;                  // eV/nm on one element
-  Vector3 torque = Vector3::Zero();  // eV on one element
-  double angle = 0;                  // rad, of a prescribed rotation
-  double ramp = 0;                   // ps, in which it is turned
-  double twist = 0;                  // rad/nm, prescribed to the rope as a whole
-  std::optional<Clamp> clamp = {};
-  double turning = 0;  // rad/ps, the fastest of a prescribed rotation
+  Is is = Is::free;
+  bool each = true;  // for each tube by itself, or for all tubes as one body
+  // Displacement from the start (nm, rad) where it is moved, force or couple (eV/nm, eV) where it is loaded; with
+  // sharp corners.
+  Schedule course;
+  std::function<double(double)> now;  // the same at a time (ps), with the corners as they are applied
+
+  static LoadComponent held(bool each = true) { return {Is::held, each, {}, {}}; }
+  static LoadComponent follows(Is is, Schedule course, bool each = true) {
+    const auto at = [course](double time) { return course.value(time); };
+    return {is, each, std::move(course), at};
+  }
+  bool is_kept() const { return is == Is::held || is == Is::moved; }
 };
+
+struct LoadEffect {
+  static constexpr std::size_t z = 2, about_z = 5;
+  // What acts about the axis: a couple of fixed direction, one that turns with its element, forces about the middle
+  // of the end, or the rigid body of a clamp.
+  enum class By { couple, turning_couple, tangential, body };
+
+  std::array<LoadComponent, 6> axes;  // along x, y, z, about x, y, z; on each element of a tube or on its clamp
+  By by = By::couple;
+  bool by_element = true;      // each element of a tube has the load, or the clamp of several has it
+  bool keeps_tilt = false;     // of the tubes
+  bool between_ends = false;   // of the upper end against the lower one
+  bool relaxes_spins = false;  // no bond holds a moment by its twist
+};
+// Of the same force and couple on each element at all times.
+LoadEffect constant_effect(const Vector3& force, const Vector3& couple);
 
 // The processes that have the elements of a load together.
 using LoadProcesses = Processes;
@@ -78,8 +95,10 @@ class Load {
   virtual void keep(const std::vector<std::size_t>& places, const LoadProcesses& others);
   // Why the load has no meaning in a relaxation; empty: it has.
   virtual std::string needs_time() const { return ""; }
-  // None where it cannot be said beforehand.
+  // What it does, component by component; none where it cannot be said beforehand.
   virtual std::optional<LoadEffect> effect() const { return std::nullopt; }
+  // The load that does the opposite, for the other end of a rope; null: it has none.
+  virtual std::shared_ptr<Load> opposite() const { return nullptr; }
 
  protected:
   explicit Load(std::vector<int> on = {}) : elements(std::move(on)) {}

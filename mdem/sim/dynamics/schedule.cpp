@@ -81,6 +81,48 @@ double Schedule::largest() const {
   return most;
 }
 
+double Schedule::reaches(double part) const {
+  const double wanted = part * largest();
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const Point& p = points_[k];
+    if (std::fabs(p.value) < wanted) continue;
+    if (k == 0 || part >= 1) return p.time;
+    const Point& before = points_[k - 1];
+    const double aim = std::copysign(wanted, p.value);
+    return before.time + (p.time - before.time) * (aim - before.value) / (p.value - before.value);
+  }
+  return ends();
+}
+
+double Schedule::leaves() const {
+  for (auto p = points_.rbegin(); p != points_.rend(); ++p)
+    if (std::fabs(p->value) >= largest()) return p->time;
+  return 0;
+}
+
+Schedule sum_of(const std::vector<ScheduleTerm>& terms) {
+  std::vector<double> times;
+  std::vector<Schedule> sharp;
+  for (const ScheduleTerm& term : terms) {
+    sharp.emplace_back(term.schedule.points());
+    for (const Schedule::Point& p : term.schedule.points()) times.push_back(p.time);
+  }
+  std::sort(times.begin(), times.end());
+  // The later of two times that only rounding tells apart: a rate between them would be noise.
+  std::vector<double> apart;
+  for (const double time : times) {
+    if (!apart.empty() && time - apart.back() <= 1e-12 * std::fabs(time)) apart.pop_back();
+    apart.push_back(time);
+  }
+  std::vector<Schedule::Point> points;
+  for (const double time : apart) {
+    double sum = 0;
+    for (std::size_t k = 0; k < terms.size(); ++k) sum += terms[k].factor * sharp[k].value(time);
+    points.push_back({time, sum});
+  }
+  return Schedule(std::move(points));
+}
+
 std::string words_of(const Schedule& schedule) {
   std::string text;
   for (const Schedule::Point& p : schedule.points())

@@ -6,6 +6,7 @@
 // hold and at either end the speed is zero there, and otherwise that of the slower of the two lines.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ class Schedule {
   double last() const { return points_.empty() ? 0.0 : points_.back().value; }
   double largest() const;  // of its absolute values
   double fastest() const;  // of its absolute rates between two points
+  // The first time at which the absolute value is this part of the largest one, along straight lines.
+  double reaches(double part = 1) const;
+  double leaves() const;  // ps, the last time at which it has the largest
+  // Whether the last value is the largest.
+  bool stays() const { return std::fabs(last()) >= largest(); }
 
  private:
   // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of it.
@@ -49,6 +55,13 @@ class Schedule {
   std::vector<Point> points_;
   std::vector<Line> lines_;
 };
+
+// The sum, with sharp corners, each schedule times its factor.
+struct ScheduleTerm {
+  double factor = 1;
+  Schedule schedule;
+};
+Schedule sum_of(const std::vector<ScheduleTerm>& terms);
 
 // Its values in order: "300", or "300 to 400 to 300".
 std::string words_of(const Schedule& schedule);

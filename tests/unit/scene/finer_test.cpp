@@ -211,7 +211,7 @@ TEST(FinerScene, NodesAndTypedStepGoWithTheLengthAndTheExclusionStays) {
   EXPECT_EQ(p.fine.contact.exclude_along_tube, 7);
   EXPECT_NEAR(p.after.time_step / p.after.limit.limit, p.before.time_step / p.before.limit.limit, 1e-12);
   EXPECT_LT(p.after.time_step, 0.8 * p.before.time_step);
-  EXPECT_NEAR(watched_of(p.fine, p.after.topology, p.after.interaction.law.get()).limits.at(0).bend,
+  EXPECT_NEAR(watched_of(p.fine, p.after.topology, p.after.loads, p.after.interaction.law.get()).limits.at(0).bend,
               12 * units::degree, 1e-12);
 }
 

@@ -55,7 +55,7 @@ double rate_for(double shock, Load load, const ParameterSet& set) {
 // The largest kinetic energy over the energy of twist under the whole moment.
 double reached(const Load& load, const CaseContext& context) {
   const Rope rope(load, context.model(), context.set());
-  const double twist = twist_energy_of(rope.scene, rope.prepared.topology);
+  const double twist = twist_energy_of(rope.scene, rope.prepared.topology, rope.prepared.loads);
   Simulation s = start(rope.scene, rope.prepared);
   const long steps = std::lround(rope.prepared.duration / rope.prepared.time_step);
   double kinetic = 0;
