@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,32 +20,6 @@ namespace ropewalk {
 struct Interaction;
 struct Scene;
 class TomlTable;
-
-// A moment about the axis of the rope, on its end elements, that rises at a rate and then stays.
-struct MomentRamp {
-  enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
-  double moment = 0;                       // eV, in its reading
-  double rate = 0;                         // eV/ps; 0: it acts at once
-  double hold = 0;                         // ps after the ramp
-  double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays
-  Reading reading = Reading::per_tube;
-  bool left_handed = false;     // it turns the upper end to the left
-  bool geometric_only = false;  // spins are relaxed, so that no bond holds the moment by its twist
-
-  double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
-  double unload_time() const { return unload_rate > 0 ? moment / unload_rate : 0.0; }  // ps
-  // eV, without a sign.
-  double moment_at(double time) const {
-    if (const double unloading = time - ramp_time() - hold; unload_rate > 0 && unloading > 0)
-      return unload_rate * unloading < moment ? moment - unload_rate * unloading : 0;
-    const double ramped = rate > 0 ? rate * time : moment;
-    return ramped < moment ? ramped : moment;
-  }
-  double hand() const { return left_handed ? -1 : 1; }
-  // eV, on the upper end; right-handed: positive.
-  double upper_moment_at(double time) const { return left_handed ? 0 - moment_at(time) : moment_at(time); }
-  double of_each(int tubes) const { return reading == Reading::per_tube ? moment : moment / tubes; }  // eV
-};
 
 class Drive {
  public:
@@ -92,8 +67,13 @@ class Drive {
   virtual bool holds_elements() const;
   // The number of elements at this end of a tube that the drive holds as one rigid piece.
   virtual int held(End /*end*/, int /*tube*/) const { return 0; }
-  // The moment that it applies; null: none.
-  virtual const MomentRamp* moment_ramp() const { return nullptr; }
+  // The two types of tubes that its table names by the key `types`; empty: all. Null: it does not act by types. Of
+  // listed drives of one kind, one that names a pair has that pair alone; two that name the same are refused.
+  virtual const std::vector<int>* types() const { return nullptr; }
+  // The same drive without these pairs of types, for a drive that names none. Null: it does not act by types.
+  virtual std::shared_ptr<const Drive> without(const std::vector<std::pair<int, int>>& /*pairs*/) const {
+    return nullptr;
+  }
   // Null, if this drive is no thermostat.
   virtual const ThermostatOptions* thermostat() const { return nullptr; }
 

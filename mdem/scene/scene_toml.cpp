@@ -72,7 +72,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   for (const DriveKind& kind : drive_kinds()) {
     const SceneTable table = kind.table();
     if (table.listed)
-      for (const TomlTable& t : top.tables(table.name)) scene.drives.push_back(kind.read(t, scene));
+      read_listed_drives(kind, top.tables(table.name), scene);
     else if (top.has(table.name))
       scene.drives.push_back(kind.read(top.table(table.name), scene));
   }

@@ -69,6 +69,47 @@ std::vector<int> pair_of_types(const TomlTable& t, const Scene& scene) {
   return pair;
 }
 
+std::string words_of(const TypePairs& pairs) {
+  if (!pairs.named.empty()) return fmt::format(" between types {} and {}", pairs.named[0], pairs.named[1]);
+  std::string but;
+  for (const auto& [a, b] : pairs.without) but += fmt::format("{}{} and {}", but.empty() ? "" : ", ", a, b);
+  return but.empty() ? "" : " between all types but " + but;
+}
+
+void read_listed_drives(const DriveKind& kind, const std::vector<TomlTable>& tables, Scene& scene) {
+  std::vector<std::pair<std::pair<int, int>, std::size_t>> named;  // pairs, and the tables that name them
+  std::optional<std::size_t> rest;                                 // the table that names none
+  const auto refuse = [&](std::size_t table, std::size_t other, const std::string& what) {
+    throw tables[table].error("types",
+                              fmt::format("{} as {} of line {}", what, kind.table().header(), tables[other].line()),
+                              "put both into one table, or give one of them other types");
+  };
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    scene.drives.push_back(kind.read(tables[k], scene));
+    const std::vector<int>* types = scene.drives.back()->types();
+    if (!types) continue;
+    if (types->empty()) {
+      if (rest) refuse(k, *rest, "is missing, so that the table claims all pairs of types,");
+      rest = k;
+      continue;
+    }
+    const auto [a, b] = std::minmax(types->front(), types->back());
+    for (const auto& [pair, table] : named)
+      if (pair == std::pair(a, b)) refuse(k, table, fmt::format("is [{}, {}], the same pair", a, b));
+    named.push_back({{a, b}, k});
+  }
+  if (!rest || named.empty()) return;
+  const std::size_t types = scene.sets.size();
+  if (named.size() == types * (types + 1) / 2)
+    throw tables[*rest].error("types",
+                              "is missing, and other tables name all pairs of types: this one would do nothing",
+                              "take the table away, or one of the others");
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [pair, table] : named) pairs.push_back(pair);
+  auto& drive = scene.drives[scene.drives.size() - tables.size() + *rest];
+  drive = drive->without(pairs);
+}
+
 std::vector<TermKind> shipped_term_kinds() {
   std::vector<TermKind> kinds;
   for (const DriveKind& drive : shipped_drives())

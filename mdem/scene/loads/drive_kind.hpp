@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "io/toml_table.hpp"
 #include "scene/drive.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/forces/terms/type_pairs.hpp"
 
 namespace ropewalk {
 
@@ -29,6 +31,14 @@ int element_of_tube(const Topology& topology, int tube, int element, const Input
 // Reads the key `types`: two tube types, or an empty list where the table does not have this key. Throws InputError
 // for types that the scene does not have.
 std::vector<int> pair_of_types(const TomlTable& t, const Scene& scene);
+
+// Pairs of types in words, for Drive::words(): " between types 0 and 1", or nothing where they are all.
+std::string words_of(const TypePairs& pairs);
+
+// Appends the drives of these tables, all of this kind, to those of the scene. A pair of types belongs to the one
+// table that names it, and all other pairs to the one that names none (Drive::types). Throws InputError where two
+// tables claim the same pair.
+void read_listed_drives(const DriveKind& kind, const std::vector<TomlTable>& tables, Scene& scene);
 
 // In the order of help and templates.
 const std::vector<DriveKind>& drive_kinds();

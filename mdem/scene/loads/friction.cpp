@@ -28,8 +28,9 @@ struct FrictionLaw {
 class FrictionDrive : public Drive {
  public:
   DryFriction typed{0, 0, 0, 0.06, 0, false, {}};
-  std::string from;               // "atoms", or a shipped pair; empty: typed
-  std::vector<FrictionLaw> laws;  // for each pair of types where they come from atoms
+  std::string from;                  // "atoms", or a shipped pair; empty: typed
+  std::vector<FrictionLaw> laws;     // for each pair of types where they come from atoms
+  std::vector<std::string> strange;  // files that were passed over
 
   SceneTable table() const override;
   std::string words() const override {
@@ -39,11 +40,21 @@ class FrictionDrive : public Drive {
           "{}friction{}, {}: {:.4g} pN/nm along the axis, {:.4g} pN/nm against spin, {:.4g} pN at each end, "
           "elastic "
           "up to {:.4g} nm, drag {:.4g} eV ps/nm^3{}",
-          text.empty() ? "" : "\n",
-          f.law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(f.law.types, " and ")),
-          f.law.corrugated ? "a corrugation" : "dry", f.law.axial / pN, f.law.spin / pN, f.law.end / pN,
-          f.law.elastic_slip, f.law.drag, f.words);
+          text.empty() ? "" : "\n", words_of(f.law.types), f.law.corrugated ? "a corrugation" : "dry",
+          f.law.axial / pN, f.law.spin / pN, f.law.end / pN, f.law.elastic_slip, f.law.drag, f.words);
     return text;
+  }
+  const std::vector<int>* types() const override { return &typed.types.named; }
+  std::shared_ptr<const Drive> without(const std::vector<std::pair<int, int>>& pairs) const override {
+    auto narrowed = std::make_shared<FrictionDrive>(*this);
+    narrowed->laws.clear();
+    for (FrictionLaw f : laws) {
+      const std::vector<int>& named = f.law.types.named;
+      if (!named.empty() && std::count(pairs.begin(), pairs.end(), std::pair(named[0], named[1]))) continue;
+      if (named.empty()) f.law.types.without = pairs;
+      narrowed->laws.push_back(std::move(f));
+    }
+    return narrowed;
   }
   std::vector<std::string> files() const override {
     std::vector<std::string> all;
@@ -56,13 +67,22 @@ class FrictionDrive : public Drive {
       throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"",
                       "take one of the two away");
   }
+  void warn(const Scene&, const Topology&, const LoadsAndConstraints&,
+            std::vector<std::string>& warnings) const override {
+    for (const std::string& path : strange)
+      warnings.push_back(
+          fmt::format("{} has no line format = \"{}\" and was not read as friction of tubes. If it is meant to be, "
+                      "restore that line; "
+                      "else give it a name that does not begin with friction-.",
+                      printable(path, 200), friction_format));
+  }
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     for (const FrictionLaw& f : laws) add_term(dry_friction_term(f.law, topology), interaction);
   }
 };
 
 void read_types(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
-  friction.typed.types = pair_of_types(t, scene);
+  friction.typed.types.named = pair_of_types(t, scene);
 }
 
 void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
@@ -77,7 +97,13 @@ void read_from(const TomlTable& t, const Scene&, FrictionDrive& friction) {
 
 FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<int> types,
                    const std::string& estimate) {
-  return {{f.strength, f.spin_strength, f.end_strength, f.elastic_slip, f.drag, typed.corrugated, std::move(types)},
+  return {{f.strength,
+           f.spin_strength,
+           f.end_strength,
+           f.elastic_slip,
+           f.drag,
+           typed.corrugated,
+           {std::move(types), {}}},
           fmt::format(", of atoms ({}, {}{})", f.name, grade_of(f).words(), estimate),
           f.path};
 }
@@ -89,7 +115,7 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& ty
   const auto n = static_cast<int>(scene.sets.size());
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j) {
-      const std::vector<int>& types = typed.types;
+      const std::vector<int>& types = typed.types.named;
       if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const Chirality a = scene.sets[static_cast<std::size_t>(i)].chirality,
                       b = scene.sets[static_cast<std::size_t>(j)].chirality;
@@ -110,9 +136,10 @@ void check(const TomlTable& t, const Scene& scene, FrictionDrive& friction) {
   for (const ParameterSet& set : scene.sets)
     folders.push_back(std::filesystem::path(set.path).parent_path().string());
   if (friction.from == "atoms") {
+    friction.strange = strange_friction_files(folders);
     friction.laws = laws_of_atoms(scene, law, folders, place);
   } else if (!friction.from.empty()) {
-    friction.laws = {law_of(find_friction(friction.from, folders, place), law, law.types, "")};
+    friction.laws = {law_of(find_friction(friction.from, folders, place), law, law.types.named, "")};
   } else {
     if (!(law.axial > 0 || law.spin > 0 || law.end > 0 || law.drag > 0))
       throw t.error("strength_pN_per_nm", "and all other strengths are zero",
@@ -161,7 +188,8 @@ const KeyTable<FrictionDrive>& friction_table() {
            "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
            "\"corrugation\", which loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
-                   "the two tube types between which it acts, from 0", read_types)},
+                   "the two tube types between which it acts, from 0; this pair is then this table's alone",
+                   read_types)},
       check};
   return table;
 }

@@ -57,6 +57,16 @@ class LinksDrive : public Drive {
         "raise reach_nm or per_nm, or bring the tubes nearer");
   }
   bool is_random() const override { return law.forming > 0; }
+  // A table with nothing but `between` acts on the elements that it names.
+  const std::vector<int>* types() const override {
+    const bool by_types = law.density > 0 || law.at_ends > 0 || law.forming > 0 || between.empty();
+    return by_types ? &law.types.named : nullptr;
+  }
+  std::shared_ptr<const Drive> without(const std::vector<std::pair<int, int>>& pairs) const override {
+    auto narrowed = std::make_shared<LinksDrive>(*this);
+    narrowed->law.types.without = pairs;
+    return narrowed;
+  }
   std::string why_not_split() const override { return between.empty() ? "" : "links name elements by number"; }
   std::string not_for_lammps() const override { return "links"; }
 
@@ -106,8 +116,8 @@ std::string LinksDrive::words() const {
   if (law.strength > 0) ends.push_back(fmt::format("at {:.4g} nN", law.strength / units::nN_nm));
   if (law.toughness > 0) ends.push_back(fmt::format("at {:.4g} eV", law.toughness));
   return fmt::format("links{}: {}; {:.4g} nN/nm in stretch, {:.4g} nN/nm in shear, at rest {}; {}",
-                     law.types.empty() ? "" : fmt::format(" between types {}", fmt::join(law.types, " and ")),
-                     fmt::join(where, ", "), law.stretch / units::nN_nm, law.shear / units::nN_nm,
+                     words_of(law.types), fmt::join(where, ", "), law.stretch / units::nN_nm,
+                     law.shear / units::nN_nm,
                      law.rest < 0 ? "as they form" : fmt::format("with {:.4g} nm between the walls", law.rest),
                      ends.empty() ? "they do not break" : fmt::format("they break {}", fmt::join(ends, " or ")));
 }
@@ -122,7 +132,7 @@ void read_links_between(const TomlTable& t, const Scene&, LinksDrive& links) {
 }
 
 void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links) {
-  links.law.types = pair_of_types(t, scene);
+  links.law.types.named = pair_of_types(t, scene);
 }
 
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
@@ -197,8 +207,10 @@ const KeyTable<LinksDrive>& links_table() {
            "links that form while the scene moves, per length of contact and time"),
        Key::number(
            "most_per_nm", per_nm, Bounds::positive(100), [](auto& d) -> auto& { return d.law.most; },
-           otherwise("1", "required by forming_per_nm_ps"), "links per length of a tube beyond which none form"),
-       Key::custom("types", "", otherwise("[0, 1]", "all tubes"), "the two tube types that they join, from 0",
+           otherwise("1", "required by forming_per_nm_ps"),
+           "links of this table per length of a tube beyond which none form"),
+       Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
+                   "the two tube types that they join, from 0; this pair is then this table's alone",
                    read_linked_types),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),

@@ -252,11 +252,7 @@ class DryFrictionTerm : public ForceTerm {
                                     tube_begin_.begin()) -
            1;
   }
-  bool acts_between(int a, int b) const {
-    if (law_.types.empty()) return true;
-    const int of_a = element(a).type, of_b = element(b).type;
-    return (of_a == law_.types[0] && of_b == law_.types[1]) || (of_a == law_.types[1] && of_b == law_.types[0]);
-  }
+  bool acts_between(int a, int b) const { return law_.types.have(element(a).type, element(b).type); }
 
   // --- a contact ---
   double stiff_along(const Contact& c) const {

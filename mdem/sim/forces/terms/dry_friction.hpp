@@ -36,9 +36,9 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "sim/forces/force_term.hpp"
+#include "sim/forces/terms/type_pairs.hpp"
 
 namespace ropewalk {
 
@@ -49,7 +49,7 @@ struct DryFriction {
   double elastic_slip = 0;  // delta, nm
   double drag = 0;          // eta, eV ps/nm^3
   bool corrugated = false;  // the second potential
-  std::vector<int> types;   // the two types of tubes between which it acts; none: between all
+  TypePairs types;          // of tubes between which it acts
 };
 
 // `scene`: all elements.

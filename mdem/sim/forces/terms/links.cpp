@@ -90,8 +90,8 @@ int poisson(double mean, double u) {
 
 bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
   const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-  return tube_i != tube_j && law.links(topology.tube_type[static_cast<std::size_t>(tube_i)],
-                                       topology.tube_type[static_cast<std::size_t>(tube_j)]);
+  return tube_i != tube_j && law.types.have(topology.tube_type[static_cast<std::size_t>(tube_i)],
+                                            topology.tube_type[static_cast<std::size_t>(tube_j)]);
 }
 
 // In a slice a link and its images are one: that of two own elements, or of an own one and an image above it.
@@ -276,7 +276,7 @@ class LinkTerm : public ForceTerm {
       if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) fail();
       if (x.size() == 4 && !has_head) {
         last_formed_ = x[0];
-        begun_ = std::lround(x[1]);
+        begun_ = static_cast<int>(std::lround(x[1]));
         given_ = x[2];
         waits_ = x[3] != 0;
         has_head = true;
@@ -476,10 +476,6 @@ class LinkTerm : public ForceTerm {
 };
 
 }  // namespace
-
-bool LinkLaw::links(int type, int other) const {
-  return types.empty() || (type == types[0] && other == types[1]) || (type == types[1] && other == types[0]);
-}
 
 std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology, const State& state,
                                     const std::vector<std::pair<int, int>>& pairs, std::uint32_t step) {

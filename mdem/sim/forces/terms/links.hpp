@@ -14,9 +14,9 @@
 // At the start there are, in the mean, `density` links for each length along which two tubes face each other within
 // `reach` between their walls, at random places (Poisson), or `at_ends` links of each tube end with the tubes that
 // it faces; or they are placed like that at a later time. While a scene moves, links form with the rate `forming`
-// per length and time, every picosecond, as long as there are less than `most` per length of either tube. What
-// forms depends on the numbers of the elements, the seed, the lineage and the step, so that a run gives the same
-// bits on any number of threads and after `resume`.
+// per length and time, every picosecond, as long as there are less than `most` of this law per length of either
+// tube. What forms depends on the numbers of the elements, the seed, the lineage and the step, so that a run gives
+// the same bits on any number of threads and after `resume`.
 //
 // Source of the shear lag that such links give: O. Volkersen, Luftfahrtforschung 15, 41 (1938). Units nm, ps, eV.
 #pragma once
@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "sim/forces/force_term.hpp"
+#include "sim/forces/terms/type_pairs.hpp"
 
 namespace ropewalk {
 
@@ -40,10 +41,7 @@ struct LinkLaw {
   double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
   std::uint64_t lineage = 0;  // of the links that form while the scene moves: see lineage_key()
-  std::vector<int> types;  // two types of tubes, whose contacts get links; none: all contacts do
-
-  // Whether it joins tubes of these types.
-  bool links(int type, int other) const;
+  TypePairs types;            // of tubes whose contacts get links
 };
 
 // Where a link holds: elements of the scene, and its points and normals in their frames.

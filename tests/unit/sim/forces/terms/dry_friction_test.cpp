@@ -226,6 +226,28 @@ TEST(DryFriction, ActsBetweenItsTypesOnly) {
   EXPECT_LT(energy("types = [1, 1]\n"), 1e-12);
 }
 
+TEST(DryFriction, OfTwoTablesTheOneThatNamesAPairHasItAlone) {
+  const auto hold = [](const std::string& tables) {
+    TermsAlone rope(
+        scene_of_text("format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-10-10-tersoff\"]\n"
+                      "tube_types = [1, 0, 0, 0, 0, 0, 0]\n[rope]\ntubes = 7\nlength_nm = 13.8\n" +
+                          tables + "[run]\nduration_ps = 1\n",
+                      "types.toml"));
+    State s = rope.p.state;
+    const int first = rope.p.topology.tube_begin[1];
+    for (int e = 0; e < first; ++e) s.position.add(static_cast<std::size_t>(e), Vector3(0, 0, 0.03));
+    const Forces f = rope.at(s);
+    double sum = 0;
+    for (int e = 0; e < first; ++e) sum += f.force[static_cast<std::size_t>(e)].z();
+    return sum;
+  };
+  const std::string weak = "[[friction]]\nstrength_pN_per_nm = 10\ntypes = [0, 1]\n";
+  const double alone = hold(axial);
+  EXPECT_NEAR(alone, -0.5 * 40 * pN * 6 * 13.78, 1e-3 * -alone);
+  EXPECT_NEAR(hold(axial + weak), 0.25 * alone, 1e-9);
+  EXPECT_NEAR(hold(weak + axial), 0.25 * alone, 1e-9);
+}
+
 TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
   Scene scene = rope(both + "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
   Simulation s = start(scene, prepare(scene));
@@ -359,6 +381,8 @@ TEST(DryFriction, BadOnesAreRefused) {
   EXPECT_THAT(message("[[friction]]\n"), HasSubstr("friction.strength_pN_per_nm"));
   EXPECT_THAT(message(axial + "types = [0]\n"), HasSubstr("two entries"));
   EXPECT_THAT(message(axial + "types = [0, 1]\n"), HasSubstr("there is no tube type 1"));
+  EXPECT_THAT(message(axial + ends),
+              HasSubstr("claims all pairs of types, as [[friction]] of line 6; put both into one table"));
   EXPECT_THAT(message(axial + "elastic_slip_nm = 0\n"), HasSubstr("elastic_slip_nm"));
   EXPECT_THAT(message(axial, "[contact]\nlaw = \"none\"\n"), HasSubstr("contact.law"));
   EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("[periodic]"));

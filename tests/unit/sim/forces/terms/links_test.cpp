@@ -35,6 +35,14 @@ Scene rope(const std::string& links, const std::string& run = "duration_ps = 5\n
           of_rope + more + links + "[run]\n" + run,
       "links.toml");
 }
+// The same tubes, as two types.
+Scene rope_of_two(const std::string& types, const std::string& links, const std::string& run = "duration_ps = 5\n",
+                  const std::string& more = "") {
+  return scene_of_text(
+      "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-10-10-tersoff\"]\ntube_types = [" +
+          types + "]\n[rope]\ntubes = 7\nlength_nm = 13.8\n" + more + links + "[run]\n" + run,
+      "links.toml");
+}
 const std::string stiff = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 100\n",
                   lopsided = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 100\nshear_stiffness_nN_per_nm = 30\n",
                   breaking = "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 40\nbreaks_at_nN = 2\n",
@@ -162,13 +170,14 @@ TEST(Links, DoNotBreakWhereTheyPush) {
 }
 
 TEST(Links, OfSeveralTablesStandInPlacesOfTheirOwn) {
-  Scene scene = rope(stiff + stiff);
+  const std::string both = stiff + "types = [0, 0]\n" + stiff + "types = [0, 1]\n";
+  Scene scene = rope_of_two("0, 1, 0, 1, 0, 1, 0", both);
   const Prepared p = prepare(scene);
   const Simulation s = start(scene, p);
   std::set<std::pair<double, double>> places;
   for (const TermEvent& e : s.term_events()) places.emplace(e.place.x(), e.place.z());
   EXPECT_EQ(places.size(), s.term_events().size());
-  Scene other = rope(stiff, "duration_ps = 5\n", "[start]\nseed = 2\n");
+  Scene other = rope_of_two("0, 1, 0, 1, 0, 1, 0", both, "duration_ps = 5\n", "[start]\nseed = 2\n");
   const Prepared q = prepare(other);
   EXPECT_NE(start(other, q).term_events().front().place.z(), s.term_events().front().place.z()) << "start.seed";
 }
@@ -224,9 +233,33 @@ TEST(Links, ArePlacedAtALaterTimeToo) {
   EXPECT_GE(s.term_events().front().time, 2);
 }
 
+// The first tube stands in the middle: half of the twelve contacts are its own.
+TEST(Links, OfTwoTablesTheOneThatNamesAPairHasItAlone) {
+  const auto placed = [](const std::string& tables) {
+    double sum = 0;
+    for (int seed = 0; seed < 20; ++seed) {
+      Scene scene = rope_of_two("1, 0, 0, 0, 0, 0, 0", tables, "duration_ps = 5\n",
+                                "[start]\nseed = " + std::to_string(seed) + "\n");
+      for (const auto& term : prepare(scene).interaction.terms) sum += static_cast<double>(term->begun_at_start());
+    }
+    return sum;
+  };
+  const std::string all = "[[links]]\nper_nm = 1.5\nstiffness_nN_per_nm = 1\n", pair = all + "types = [1, 0]\n";
+  const double contact = placed(pair) / 1.5, tolerance = 4 * std::sqrt(2 * 1.5 * contact);
+  EXPECT_NEAR(contact, 20 * 6 * 13.78, tolerance / 1.5);
+  EXPECT_NEAR(placed(all + pair), 2 * 1.5 * contact, tolerance);
+  EXPECT_NEAR(placed(pair + all), 2 * 1.5 * contact, tolerance);
+  const std::string none = "[[links]]\nper_nm = 0\nstiffness_nN_per_nm = 1\ntypes = [0, 1]\n";
+  EXPECT_NEAR(placed(all + none), 1.5 * contact, tolerance);
+  Scene scene = rope_of_two("1, 0, 0, 0, 0, 0, 0", all + none);
+  EXPECT_THAT(scene.drives[0]->words(), HasSubstr("between all types but 0 and 1"));
+}
+
 TEST(Links, SameBitsOnAnyThreadsAndAfterResume) {
-  Scene scene = rope(forming + breaking + "placed_at_ps = 4\n" + breaking, "duration_ps = 20\ntime_step_fs = 16\n",
-                     warm + pulled);
+  Scene scene =
+      rope_of_two("1, 0, 0, 0, 1, 1, 1",
+                  forming + "types = [0, 0]\n" + breaking + "types = [0, 1]\nplaced_at_ps = 4\n" + breaking,
+                  "duration_ps = 20\ntime_step_fs = 16\n", warm + pulled);
   const auto simulation = [&] {
     const Prepared p = prepare(scene);
     return start(scene, p);
@@ -305,6 +338,16 @@ TEST(Links, BadOnesAreRefused) {
   EXPECT_EQ(message("[[links]]\nper_nm = 0\n" + k), "none") << "the control of a sweep";
   EXPECT_THAT(message("[[links]]\nforming_per_nm_ps = 1\n" + k), HasSubstr("most_per_nm: is missing"));
   EXPECT_THAT(message("[[links]]\nper_nm = 1\ntypes = [0, 1]\n" + k), HasSubstr("there is no tube type 1"));
+  // Each would place its links, and each would count them up to its own limit.
+  const std::string both = "[[links]]\nforming_per_nm_ps = 1\nmost_per_nm = 0.3\n" + k;
+  EXPECT_EQ(message(both + both),
+            "links.toml:10: links.types: is missing, so that the table claims all pairs of types, as [[links]] of "
+            "line 6; put both into one table, or give one of them other types");
+  EXPECT_THAT(message(both + "types = [0, 0]\n" + both + "types = [0, 0]\n"),
+              HasSubstr("is [0, 0], the same pair as [[links]] of line 6"));
+  EXPECT_THAT(message(both + "types = [0, 0]\n" + both), HasSubstr("this one would do nothing"));
+  EXPECT_EQ(message(both + "[[links]]\nbetween = [0, 5, 1, 5]\n" + k), "none")
+      << "named elements are no pair of types";
   EXPECT_THAT(message("[[links]]\nper_nm = 1\n" + k, "[contact]\nlaw = \"none\"\n"),
               HasSubstr("contact.law is \"none\""));
 }
