@@ -97,6 +97,15 @@ class RunTest(FolderTest):
         for ts, frame in zip(universe.trajectory, run.frames):
             self.assertEqual(ts.time, frame.time_ps)
             np.testing.assert_allclose(ts.positions, 10 * frame.flat.position, atol=1e-4)
+            # A cube about the origin that holds all elements.
+            self.assertGreater(ts.dimensions[0], 20 * np.abs(frame.flat.position).max())
+            np.testing.assert_array_equal(ts.dimensions[3:], 90)
+            self.assertEqual(ts.dt, run.frames[1].time_ps - run.frames[0].time_ps)
+        self.assertEqual(universe.trajectory.dt, run.frames[1].time_ps - run.frames[0].time_ps)
+        tube = ropewalk.ParameterSet("cnt-10-10-tersoff")
+        atoms = tube["tube.atoms_per_length"].value * run.frames[0].element_length_nm
+        np.testing.assert_allclose(universe.atoms.masses, 12.011 * atoms, rtol=1e-3)
+        np.testing.assert_allclose(universe.atoms.radii, 10 * tube["tube.radius"].value, rtol=1e-6)
         self.assertEqual(universe.trajectory[2].time, run.frames[2].time_ps)
         with self.assertRaisesRegex(ropewalk.InputError, "frames.gsd"):
             self.run_.to_mdanalysis()

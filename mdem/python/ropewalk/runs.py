@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 
 from . import _core
 from .errors import InputError
-from .frames import Frames
+from .frames import _AMU, Frames
 from .log import Log
 from .scene import Scene
 from .simulation import Simulation
@@ -94,20 +94,29 @@ class Run:
         return Frames(os.path.abspath(_core.frames_file(self._path)), self._scene)
 
     def to_mdanalysis(self) -> Any:
-        """The frames as an MDAnalysis.Universe in its units: positions in Å, and the times of the frames in ps, for which the
-        file frames.gsd has no place that MDAnalysis reads."""
+        """The frames as an MDAnalysis.Universe in its units: positions, radii and box in Å, masses in u, times in ps. `dt` is
+        that between the first two frames."""
         path = _core.frames_file(self._path)
         if not path.endswith(".gsd"):
             raise InputError(f"{path}: has positions that MDAnalysis takes relative to a box that moves; make frames.gsd by "
                              "`ropewalk convert`", path)
-        times = [frame.time_ps for frame in self.frames]
+        frames, core = self.frames, self._scene._core
+        times = [frame.time_ps for frame in frames]
 
+        # The file has no place for times that MDAnalysis reads.
         def in_its_units(timestep: Any) -> Any:
             timestep.data["time"] = times[timestep.frame]
+            if len(times) > 1:
+                timestep.data["dt"] = times[1] - times[0]
             timestep.positions = 10 * timestep.positions
+            timestep.dimensions = [*(10 * timestep.dimensions[:3]), 90, 90, 90]
             return timestep
 
         universe = import_module("MDAnalysis").Universe(path)
+        if times:
+            tube = frames[0].tube
+            universe.atoms.masses = core.mass[tube] / _AMU
+            universe.atoms.radii = 10 * core.radius[tube]
         universe.trajectory.add_transformations(in_its_units)
         return universe
 
