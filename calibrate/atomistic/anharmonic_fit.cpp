@@ -164,7 +164,7 @@ void fit_collapse(std::vector<AtomisticRow>& table, Stiffness& out) {
   FitOptions options;
   options.starts = 2;
   const FitResult found = fit_least_squares({{"edge", 0.8, 0.2, 2, true}}, rows.size(), residuals, options);
-  if (!found.usable()) {
+  if (found.verdict != FitResult::Verdict::converged) {
     out.warnings.push_back("the collapse: " + found.message + "; the set says nothing about endless tubes");
     return;
   }

@@ -47,6 +47,7 @@ AtomisticRow row_of(const CsvReader& csv) {
              fmt::format("they are {}", columns));
   const auto number = [&](std::size_t k) { return csv.finite_number(k, table[k].name, "write a finite number"); };
   AtomisticRow row;
+  row.line = csv.line_number();
   row.kind = csv.cells()[0];
   if (row.kind.empty()) csv.fail("kind", "is empty", "write stretch-twist, bend-short, ...");
   row.length = number(1);

@@ -158,6 +158,13 @@ struct Interval {
 // Square root of the sum of squares: error of the fit, and half of the spread over windows.
 double both(double fit, double spread) { return std::hypot(std::isfinite(fit) ? fit : 0, spread); }
 
+// A fit that ends at the edge of its box, or that the energies do not determine, has no errors to be known by.
+void refuse_undetermined(const FitResult& fit, const char* table) {
+  if (fit.at_bound.empty() && fit.undetermined.empty()) return;
+  throw InputError({"", 0, table}, fmt::format("the energies do not determine the stiffnesses: {}", fit.message),
+                   "check the potential, or give more cells in a wider window");
+}
+
 struct StretchTwistWindow {
   double strain = 0, twist = 0;  // largest, the scales of u and v
   double energy = 0;             // eV/nm, the scale of y
@@ -452,6 +459,7 @@ void fit_stretch_twist(std::vector<AtomisticRow>& table, Stiffness& out) {
   const TaylorFit taylor = fit_taylor(all, polynomial, minimum, w, left);
   const FitResult& fit = taylor.fit;
   if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();
+  refuse_undetermined(fit, "stretch-twist");
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i]->residual = -left[i] * w.energy * rows[i]->length;
 
   const Windows windows = over_windows(rows, w, degree, polynomial, minimum);
@@ -518,6 +526,7 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   const FitResult fit = fit_least_squares(
       {{"EI", 1, 0.5, 1.5, true}, {"k4", slope, slope - 0.5, slope + 0.5, true}}, pairs.size(), residuals, options);
   if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();
+  refuse_undetermined(fit, "bend");
   std::vector<double> left(pairs.size());
   residuals(fit.value, left);
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].row->residual = -left[i] * scale * pairs[i].unit;

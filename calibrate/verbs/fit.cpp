@@ -15,9 +15,11 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "io/data_files.hpp"
 #include "io/files.hpp"
+#include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
 #include "verbs/tables.hpp"
@@ -42,7 +44,10 @@ struct FitModel {
   std::vector<FitParameter> nuisance;
   std::size_t residuals = 0;
   std::function<void(const std::vector<double>&, std::vector<double>&)> function;
-  std::string weighting;  // meaning of a residual of 1
+  std::string weighting;   // meaning of a residual of 1
+  std::vector<int> lines;  // of the table, for each residual
+  std::string column;      // of the energies
+  double largest = 0.1;    // residual that a set may have
 };
 
 // --- Stiffness ------------------------------------------------------------------------------------------
@@ -102,9 +107,10 @@ FitModel stiffness_model(const std::string& path) {
       }
     }
   };
-  m.residuals = static_cast<std::size_t>(std::count_if(rows->begin(), rows->end(), [](const AtomisticRow& r) {
-    return r.kind == "stretch-twist" || r.kind == "bend-short" || r.kind == "bend-long";
-  }));
+  for (const AtomisticRow& r : *rows)
+    if (r.kind == "stretch-twist" || r.kind == "bend-short" || r.kind == "bend-long") m.lines.push_back(r.line);
+  m.residuals = m.lines.size();
+  m.column = "energy_eV";
   m.weighting = "the largest energy per length of the window";
   return m;
 }
@@ -128,6 +134,8 @@ template <class Law, class Energy>
 void add_contact_residuals(FitModel& m, std::vector<ContactRow> rows, Law law, Energy energy) {
   const std::vector<double> weights = weights_of(rows);
   m.residuals = rows.size();
+  for (const ContactRow& r : rows) m.lines.push_back(r.line);
+  m.column = "energy";
   m.weighting = "the depth of its well";
   m.function = [=](const std::vector<double>& p, std::vector<double>& r) {
     Law trial = law;
@@ -152,6 +160,7 @@ FitModel line_model(const std::string& path, const ParameterSet& base) {
     if (r.kind == "density") return d.energy(r.distance);
     return r.kind == "parallel" ? line_parallel_energy(d, r.distance) : line_crossed_energy(d, r.distance, r.angle);
   };
+  m.largest = unusable_contact;
   add_contact_residuals(m, read_contact_csv(path), base.line->density, energy);
   return m;
 }
@@ -174,6 +183,7 @@ FitModel paper_model(const std::string& path, const ParameterSet& base) {
     return r.kind == "parallel" ? paper_parallel_energy(k, length, r.distance)
                                 : paper_crossed_energy(k, length, r.distance, r.angle);
   };
+  m.largest = 0.5;  // one point of an element has no better law where tubes touch hard
   add_contact_residuals(m, std::move(rows), *base.paper, energy);
   return m;
 }
@@ -321,7 +331,13 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
       q.doi = "";
       q.note = "fitted to " + fs::path(a.data).filename().string();
     }
-  if (s.model == "line") renew_wells(s, fit, set);
+  if (s.model == "line") {
+    renew_wells(s, fit, set);
+    for (Quantity& q : set.quantities)
+      if (q.key == "contact.line.K")
+        q.note = fmt::format("fitted to {}; fit error {:.1e} of the well", fs::path(a.data).filename().string(),
+                             fit.largest);
+  }
   if (s.model == "stiffness") renew_shear(s, set);
   renew_correlations(s, m, fit, set);
   set.name = fs::path(a.out).stem().string();
@@ -332,21 +348,55 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
                                           fmt::join(s.free, ", "), a.command));
 }
 
+// Numbers that are zero in some tubes have the half width of their box as a measure.
+bool is_determined(const Named& n, double value, double error) {
+  return error <= std::max(std::fabs(value), n.narrowest);
+}
+
+// Why no set is made of a fit that ended well by itself.
+std::optional<InputError> fault_of(const FitModel& m, const std::vector<FitParameter>& parameters,
+                                   const FitResult& fit, const FitArguments& a, const TomlTable& top) {
+  std::vector<double> left(m.residuals);
+  m.function(fit.value, left);
+  const auto worst =
+      std::max_element(left.begin(), left.end(), [](double x, double y) { return std::fabs(x) < std::fabs(y); });
+  if (std::fabs(*worst) > m.largest)
+    return InputError(
+        {a.data, m.lines[static_cast<std::size_t>(worst - left.begin())], m.column},
+        fmt::format("the fit misses this energy by {:.2g} of {}, and a set may miss {:.2g}", std::fabs(*worst),
+                    m.weighting, m.largest),
+        "check its unit and, of a tube, that energies count from the relaxed straight one, for all rows; or take "
+        "this row out");
+  const InputError::Place settings{a.settings, top.line("free"), "free"};
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const FitParameter& p = parameters[k];
+    const bool named = k < m.named.size();
+    if (std::find(fit.at_bound.begin(), fit.at_bound.end(), p.name) != fit.at_bound.end())
+      return InputError(
+          settings,
+          named ? fmt::format("{} ended at a bound of its box, {:.6g} to {:.6g} {}", p.name, p.lower, p.upper,
+                              m.named[k].unit)
+                : fmt::format("the term {} of the energies ended at its bound", p.name),
+          fmt::format("check the energies of {} and their units{}", a.data,
+                      named ? "; if such values are meant, widen [bounds], else take it out of free" : ""));
+    if (named && p.free && !is_determined(m.named[k], fit.value[k], fit.standard_error[k]))
+      return InputError(settings,
+                        fmt::format("these data do not determine {}: {:.6g} +- {:.2g} {}", p.name, fit.value[k],
+                                    fit.standard_error[k], m.named[k].unit),
+                        "take it out of free, or bring more and better energies");
+  }
+  return std::nullopt;
+}
+
 void print_fit(const FitModel& m, const std::vector<FitParameter>& parameters, const FitResult& fit) {
   for (std::size_t k = 0; k < m.named.size(); ++k)
     fmt::print("  {:<14} {:>16.9g}  {:<24} {}\n", m.named[k].name, fit.value[k],
                parameters[k].free ? fmt::format("+- {:.3g}", fit.standard_error[k]) : "(held)", m.named[k].unit);
   fmt::print("  {} residuals, rms {:.3g}, largest {:.3g} of {}; {} evaluations\n  {}\n", m.residuals, fit.rms,
              fit.largest, m.weighting, fit.evaluations, fit.message);
-  std::vector<std::string> loose;
-  for (std::size_t k = 0; k < m.named.size(); ++k)
-    if (parameters[k].free && fit.standard_error[k] > std::fabs(fit.value[k])) loose.push_back(m.named[k].name);
-  if (!loose.empty())
-    fmt::print("  these data do not determine {}: their errors exceed them; take them out of `free`\n",
-               fmt::join(loose, ", "));
 }
 
-nlohmann::ordered_json fit_json(const FitModel& m, const FitResult& fit) {
+nlohmann::ordered_json fit_json(const FitModel& m, const FitResult& fit, bool usable) {
   nlohmann::ordered_json j;
   for (std::size_t k = 0; k < m.named.size(); ++k) {
     j[m.named[k].name] = fit.value[k];
@@ -356,7 +406,7 @@ nlohmann::ordered_json fit_json(const FitModel& m, const FitResult& fit) {
   j["largest"] = fit.largest;
   j["evaluations"] = fit.evaluations;
   j["verdict"] = fit.message;
-  j["usable"] = fit.usable();
+  j["usable"] = usable;
   return j;
 }
 
@@ -385,12 +435,14 @@ int fit_command(const FitArguments& a) {
     throw InputError({a.data, 0, ""}, fmt::format("has {} energies for {} unknowns", m.residuals, unknown),
                      "bring more data, or free fewer parameters");
   const FitResult fit = fit_least_squares(parameters, m.residuals, m.function, s.search);
+  const auto fault = fit.usable() ? fault_of(m, parameters, fit, a, top) : std::nullopt;
   if (a.json) {
-    fmt::print("{}\n", fit_json(m, fit).dump(1));
+    fmt::print("{}\n", fit_json(m, fit, fit.usable() && !fault).dump(1));
   } else {
     print_fit(m, parameters, fit);
   }
   if (!fit.usable()) return 3;
+  if (fault) throw *fault;
   if (!a.out.empty()) {
     const std::string text = new_set(s, m, fit, a);
     parameters_of_text(text, a.out);  // throws where other commands would refuse it

@@ -48,6 +48,7 @@ class ContactReader {
       csv_.fail("", fmt::format("has {} columns, the header {}", csv_.cells().size(), columns_),
                 "fill the line up");
     ContactRow r;
+    r.line = csv_.line_number();
     r.kind = csv_.cells()[0];
     if (r.kind != "density" && r.kind != "parallel" && r.kind != "crossed")
       csv_.fail("kind", fmt::format("is \"{}\"", printable(r.kind, 40)), "choose density, parallel or crossed");

@@ -13,6 +13,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double known_well = 0.01;          // relative error of a good stiffness, and of a good contact
+constexpr double unknown = 0.5;              // relative error of a stiffness that is not known
 constexpr double collapsing_diameter = 4.2;  // nm
 
 constexpr double thin_shell = 0.1;  // EI from EA r^2/2, relative: calibrated tubes agree to 0.04
@@ -27,8 +28,14 @@ void add(Grade& grade, Level level, std::string reason) {
 void grade_stiffness(const ParameterSet& set, Grade& grade) {
   for (const char* key : {"EA", "EI", "GJ"}) {
     const Quantity* q = find_quantity(set, std::string("bond.") + key);
-    if (!q || !q->standard_error || *q->standard_error <= known_well * q->value) continue;
-    add(grade, Level::limited, fmt::format("{} is known to {:.2g} %", key, 100 * *q->standard_error / q->value));
+    if (!q || (q->standard_error && *q->standard_error <= known_well * q->value)) continue;
+    if (!q->standard_error) {
+      if (q->origin == "calibrated") add(grade, Level::limited, fmt::format("{} has no standard error", key));
+      continue;
+    }
+    const double error = *q->standard_error / q->value;
+    add(grade, error > unknown ? Level::unfit : Level::limited,
+        fmt::format("{} is known to {:.2g} %", key, 100 * error));
   }
 }
 

@@ -175,6 +175,56 @@ TEST_F(Calibrate, AThinTubeFromChiralityToRun) {
   EXPECT_EQ(run("calibrate show cnt-5-5-tersoff.toml").code, 2);
 }
 
+// Energies in another unit, from another zero, or with one wrong row: no set, and what to look at.
+TEST_F(Calibrate, AFitThatDoesNotHoldIsRefused) {
+  const std::string shipped = slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff-stiffness.csv");
+  // The shipped table with other energies in the rows of the fit.
+  const auto table = [&](const std::function<double(double, int row)>& energy) {
+    std::istringstream in(shipped);
+    std::string text;
+    int row = 0;
+    for (std::string line; std::getline(in, line);) {
+      if (line.rfind("stretch-twist,", 0) == 0 || line.rfind("bend-short,", 0) == 0 ||
+          line.rfind("bend-long,", 0) == 0) {
+        std::size_t from = 0;
+        for (int k = 0; k < 6; ++k) from = line.find(',', from) + 1;
+        const std::size_t to = line.find(',', from);
+        line.replace(from, to - from,
+                     fmt::format("{:.12g}", energy(std::stod(line.substr(from, to - from)), row++)));
+      }
+      text += line + "\n";
+    }
+    spit(dir / "own.csv", text);
+  };
+  const auto fit = [&](const std::string& free, const std::string& more = "") {
+    spit(dir / "own.toml",
+         "format = \"ropewalk-fit-1\"\nmodel = \"stiffness\"\nbase = \"cnt-5-5-tersoff\"\nfree = " + free + "\n" +
+             more);
+    const Outcome out = run("calibrate fit own.csv own.toml --out own-set.toml --json");
+    EXPECT_EQ(fs::exists(dir / "own-set.toml"), out.code == 0);
+    EXPECT_EQ(Json::parse(out.out).at("usable"), out.code == 0);
+    fs::remove(dir / "own-set.toml");
+    return out;
+  };
+  const std::string all = "[\"EA\", \"GJ\", \"EI\"]";
+  const auto refused = [&](const Outcome& out, const std::string& where) {
+    EXPECT_EQ(out.code, 2);
+    EXPECT_NE(out.err.find(where), std::string::npos) << out.err;
+  };
+  table([](double e, int) { return e; });
+  EXPECT_EQ(fit(all).code, 0);
+  refused(fit(all, "[bounds]\nGJ = [20, 30]\n[start]\nGJ = 25\n"),
+          "own.toml:4: free: GJ ended at a bound of its box");
+  table([](double e, int) { return e + 0.5; });
+  refused(fit(all), "energy_eV: the fit misses this energy by");
+  table([](double e, int) { return 23.06 * e; });
+  refused(fit(all), "own.");
+  table([](double e, int row) { return row == 5 ? 1.5 * e : e; });
+  const Outcome one = fit(all);
+  refused(one, "own.csv:");
+  EXPECT_NE(one.err.find("or take this row out"), std::string::npos) << one.err;
+}
+
 // Twice as stiff a wall, by energies of one's own: the shear stiffness follows, which no row of the table names.
 TEST_F(Calibrate, AFitOfTorsionTakesTheShearWithIt) {
   std::istringstream table(slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff-stiffness.csv"));

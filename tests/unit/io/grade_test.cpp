@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "io/data_files.hpp"
@@ -45,6 +46,19 @@ TEST(Grade, NamesWhatIsKnownBadly) {
   const Grade airebo = grade_of(shipped("cnt-10-10-airebo"));
   EXPECT_EQ(airebo.level, Grade::Level::limited);
   EXPECT_NE(airebo.words().find("EA is known to 1.4 %"), std::string::npos) << airebo.words();
+}
+
+TEST(Grade, OfAStiffnessThatIsNotKnownIsUnfit) {
+  ParameterSet set = shipped("cnt-10-10-tersoff");
+  const auto EI = [&]() -> Quantity& {
+    return *std::find_if(set.quantities.begin(), set.quantities.end(),
+                         [](const Quantity& q) { return q.key == "bond.EI"; });
+  };
+  EI().standard_error = 4760;
+  EXPECT_EQ(grade_of(set).level, Grade::Level::unfit);
+  EXPECT_NE(grade_of(set).words().find("EI is known to 1.3e+03 %"), std::string::npos) << grade_of(set).words();
+  EI().standard_error.reset();
+  EXPECT_EQ(grade_of(set).words(), "limited: EI has no standard error");
 }
 
 TEST(Grade, OfAWallThatIsNotOfCarbonIsUnfit) {

@@ -82,6 +82,7 @@ TEST(MeasuredText, HasAsManyDigitsAsTheErrorAllows) {
   EXPECT_EQ(measured_text(0.34710715, 9.8e-8), "0.347107150 ± 0.000000098");
   EXPECT_EQ(measured_text(358.4, 0), "358.4");
   EXPECT_EQ(measured_text(-3.2e-13, 2.5e-8), "0 ± 2.5e-08");
+  EXPECT_EQ(measured_text(1814.42, 4756), "1814 ± 4756") << "an error that exceeds a value does not hide it";
 }
 
 }  // namespace UNIT
