@@ -50,19 +50,7 @@ class GivenState : public Source {
   State state_;
 };
 
-// Two elements in one place have no forces.
-void refuse_no_numbers(const Forces& f) {
-  for (std::size_t i = 0; i < f.force.size(); ++i)
-    if (!Vector3(f.force[i]).allFinite() || !Vector3(f.torque[i]).allFinite())
-      throw InputError({"", 0, "state"}, fmt::format("the force on element {} is no finite number", i),
-                       "two elements lie in one place, or much too close");
-  if (!std::isfinite(f.energy.potential()))
-    throw InputError({"", 0, "state"}, "its energy is no finite number",
-                     "two elements lie in one place, or much too close");
-}
-
 py::dict as_dict(const State& state, const Forces& f) {
-  refuse_no_numbers(f);
   const NetForce net = net_force(state, f);
   py::dict out;
   out["stretch"] = f.energy.stretch;
@@ -112,7 +100,7 @@ py::dict energy_in_scene(const SceneHandle& handle, const py::array_t<double>& p
   Forces forces;
   {
     const py::gil_scoped_release release;
-    forces = forces_of(topology, interaction, given.state(), reference);
+    forces = forces_of(topology, interaction, given.state(), reference, {"", 0, given.file()});
   }
   return as_dict(given.state(), forces);
 }

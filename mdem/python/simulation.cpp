@@ -65,7 +65,7 @@ void SteppedScene::divide_steps(int parts) {
   seconds_of_a_step_ = patience;
 }
 
-void SteppedScene::steps(long count, bool energies) {
+void SteppedScene::steps(std::int64_t count, bool energies) {
   if (count < 0) throw std::invalid_argument("the number of steps is negative");
   if (count == 0) return;
   const Turn turn(*this);
@@ -79,11 +79,12 @@ void SteppedScene::steps(long count, bool energies) {
   if (energies) energies_ = simulation_.forces().energy;
 }
 
-void SteppedScene::steps_with_breaks(long count, bool energies) {
+void SteppedScene::steps_with_breaks(std::int64_t count, bool energies) {
   const py::gil_scoped_release release;
-  for (long done = 0; done < count;) {
+  for (std::int64_t done = 0; done < count;) {
     if (done > 0) look_for_signals();
-    const long part = std::min(count - done, std::max(1L, static_cast<long>(patience / seconds_of_a_step_)));
+    const std::int64_t part =
+        std::min(count - done, std::max<std::int64_t>(1, static_cast<std::int64_t>(patience / seconds_of_a_step_)));
     const double began = steady_seconds();
     simulation_.steps(part, energies && done + part == count);
     seconds_of_a_step_ = std::max(seconds_since(began) / static_cast<double>(part), 1e-9);
@@ -91,8 +92,8 @@ void SteppedScene::steps_with_breaks(long count, bool energies) {
   }
 }
 
-void SteppedScene::steps_with_own_forces(long count, bool energies) {
-  for (long done = 0; done < count; ++done) {
+void SteppedScene::steps_with_own_forces(std::int64_t count, bool energies) {
+  for (std::int64_t done = 0; done < count; ++done) {
     const std::string before = simulation_.serialise();
     try {
       simulation_.steps(1, energies && done + 1 == count);
@@ -141,7 +142,7 @@ Energies SteppedScene::energies() {
 const std::vector<double>& SteppedScene::measure() {
   const Simulation& s = simulation();
   if (measured_) return *measured_;
-  EnergyAccount account = account_of(scene(), s, first_, first_energy_);
+  EnergyAccount account = account_of(s, first_, first_energy_);
   account.potential = energies();  // the last step may have left them out
   account.ends = simulation_.read_gauges();
   measured_ = model_->measure(s.state(), account);

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +21,7 @@ class SteppedScene {
   // What a force of one's own throws leaves everything as it was before the step or the relaxation that it ends.
   // Where it takes longer than `brief`, other threads of Python run meanwhile, and Ctrl-C is looked for every
   // `patience`.
-  void steps(long count, bool energies);
+  void steps(std::int64_t count, bool energies);
   Relaxed relax(const RelaxGoal& goal, long max_steps);
 
   // Throws std::runtime_error while another thread steps it, as all that follow.
@@ -54,8 +55,8 @@ class SteppedScene {
   };
 
   void forget();
-  void steps_with_breaks(long count, bool energies);
-  void steps_with_own_forces(long count, bool energies);
+  void steps_with_breaks(std::int64_t count, bool energies);
+  void steps_with_own_forces(std::int64_t count, bool energies);
   const Scene& scene() const { return driven_ ? *driven_ : model_->scene; }
   void drive(std::shared_ptr<const Scene> as);
   // As the bytes say, with these loads. The forces of one's own rest meanwhile.

@@ -8,8 +8,8 @@
 
 #include "io/log.hpp"
 #include "model/error.hpp"
-#include "model/segments.hpp"
 #include "observe/centre_line.hpp"
+#include "scene/refuse_state.hpp"
 #include "scene/state_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
@@ -31,47 +31,6 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
                    fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}",
                                typed / units::fs, largest / units::fs, why),
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
-}
-
-// Elements inside of one another go apart like an explosion, or through the core unseen. A relaxation may part
-// tubes, but not those that lie side by side on one axis: walls of a multi-walled tube.
-void refuse_overlaps(const Scene& scene, const Prepared& p) {
-  if (!scene.from_file() || !p.interaction.has_contact()) return;
-  const InputError::Place place{scene.source->file(), 0, ""};
-  std::string overlap, remedy;  // the first
-  NeighbourList list(p.interaction, default_skin(p.interaction));
-  list.build(p.topology, p.state);
-  for (int i = 0; i < p.topology.elements(); ++i)
-    list.for_neighbours(i, [&](int j) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      const TubeType &ti = p.topology.type_of_element(i), &tj = p.topology.type_of_element(j);
-      const Vector3 d = p.state.position[b] - p.state.position[a], n_i = axis_of(p.state.orientation[a]),
-                    n_j = axis_of(p.state.orientation[b]);
-      const double half_i = 0.5 * ti.element_length, half_j = 0.5 * tj.element_length;
-      const double apart = std::sqrt(squared_segment_distance(d, n_i, n_j, half_i, half_j));
-      const int tube_i = p.topology.tube_of(i), tube_j = p.topology.tube_of(j);
-      const bool beside = std::fabs(d.dot(n_i)) < 0.6 * (half_i + half_j) && std::fabs(n_i.dot(n_j)) > 0.9;
-      if (tube_i != tube_j && beside && apart < 0.5 * std::max(ti.radius, tj.radius))
-        throw InputError(
-            place,
-            fmt::format("tubes {} and {} lie inside of one another: at elements {} and {} their axes are {:.3g} nm "
-                        "apart",
-                        tube_i, tube_j, a, b, apart),
-            "walls of multi-walled tubes are not supported, since contact is that between the outsides of tubes; "
-            "keep one of the walls");
-      if (!overlap.empty() || apart >= ti.radius + tj.radius) return;
-      overlap = fmt::format(
-          "elements {} and {} overlap: their axes are {:.3g} nm apart, and their radii are {:.3g} nm together", a,
-          b, apart, ti.radius + tj.radius);
-      remedy = "move them apart, or relax the state first with mode = \"relax\"";
-      // The last element of a tube and the first one of the next, one behind the other.
-      if (tube_j == tube_i + 1 && j == i + 1 && d.dot(n_i) > half_i + half_j)
-        remedy += fmt::format(
-            "; if the ends of tubes {} and {} are to meet, say that they are one strand, below the header: \"# "
-            "strands_begin_with_tubes: 0\" with the first tube of each strand",
-            tube_i, tube_j);
-    });
-  if (!overlap.empty() && scene.run.mode != RunOptions::Mode::relax) throw InputError(place, overlap, remedy);
 }
 
 // The last elements of a tube are its upper end: the signs of torque and tension follow from that, and a clamp of
@@ -127,11 +86,7 @@ void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
 // Refuses scenes that the simulator would stop in the first step.
 void refuse_first_step(const Scene& scene, const Simulation& s) {
   const Topology& topology = s.topology();
-  if (s.forces().slipping_bond >= 0)
-    throw InputError({scene.path, 0, "state"},
-                     fmt::format("the bond after element {} is twisted by 90 degrees or more, where it slips",
-                                 s.forces().slipping_bond),
-                     "turn its elements nearer to each other about the tube");
+  refuse_forces(s.forces(), {scene.path, 0, "state"});
   if (scene.run.mode == RunOptions::Mode::relax) return;
   const double dt = s.time_step(), farthest = MotionBound::radii * topology.largest_radius();
   State kicked = s.state();
@@ -267,7 +222,9 @@ Prepared prepare(Scene& scene) {
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
-  refuse_overlaps(scene, out);
+  if (scene.from_file())
+    refuse_overlaps(out.topology, out.interaction, out.state, {scene.source->file(), 0, ""},
+                    scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   return out;
 }

@@ -8,6 +8,7 @@
 #include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 #include "scene/laws/contact_law_kind.hpp"
+#include "scene/refuse_state.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/state_files.hpp"
@@ -70,16 +71,19 @@ void check_types(const SingleState& s) {
 
 }  // namespace
 
-Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference) {
+Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference,
+                 const InputError::Place& place) {
+  refuse_overlaps(topology, interaction, state, place, false);
   Forces forces(state.size());
   if (reference) {
     compute_reference(topology, interaction, state, forces);
-    return forces;
+  } else {
+    NeighbourList list(interaction, 0);
+    list.build(topology, state);
+    ForceEngine engine;
+    engine.compute(topology, interaction, list, state, forces);
   }
-  NeighbourList list(interaction, 0);
-  list.build(topology, state);
-  ForceEngine engine;
-  engine.compute(topology, interaction, list, state, forces);
+  refuse_forces(forces, place);
   return forces;
 }
 
@@ -103,7 +107,7 @@ EvaluatedState evaluate(const SingleState& s) {
   Interaction interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
   begin_with(scene.memory, out.built.topology, interaction);
-  out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference);
+  out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference, {scene.path, 0, ""});
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/error.hpp"
 #include "scene/build.hpp"
 #include "sim/forces/forces.hpp"
 
@@ -29,7 +30,9 @@ struct EvaluatedState {
 // Throws InputError, which names the options of `ropewalk energy`.
 EvaluatedState evaluate(const SingleState& state);
 
-// Forces and energies, by the plain path over all pairs or by the fast one.
-Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference);
+// Forces and energies, by the plain path over all pairs or by the fast one. Throws InputError at `place` for a
+// state that refuse_state.hpp refuses.
+Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference,
+                 const InputError::Place& place);
 
 }  // namespace ropewalk

@@ -161,7 +161,7 @@ std::vector<std::pair<double, double>> RopeSource::places(double spacing_of_tube
   std::vector<std::pair<double, double>> all = hexagonal_lattice(nearest_hexagonal(tubes).second, spacing_of_tubes);
   // Distances that differ by rounding are one.
   const auto shell = [&](const std::pair<double, double>& p) {
-    return std::lround(1e6 * std::hypot(p.first, p.second) / spacing_of_tubes);
+    return std::llround(1e6 * std::hypot(p.first, p.second) / spacing_of_tubes);
   };
   std::stable_sort(all.begin(), all.end(), [&](const auto& p, const auto& q) { return shell(p) < shell(q); });
   all.resize(static_cast<std::size_t>(tubes));

@@ -56,8 +56,8 @@ namespace {
 
 // 0, 1 or 2: neighbours on the lattice have different ones.
 int shift_of(double x, double y, double spacing) {
-  const long j = std::lround(y / (0.5 * std::sqrt(3.0) * spacing)),
-             i = std::lround(x / spacing - 0.5 * static_cast<double>(j));
+  const long long j = std::llround(y / (0.5 * std::sqrt(3.0) * spacing)),
+                  i = std::llround(x / spacing - 0.5 * static_cast<double>(j));
   return static_cast<int>(((i - j) % 3 + 3) % 3);
 }
 
