@@ -32,12 +32,16 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
       "Errors of the parameters alone: nothing of time step, elements, rate of loading or noise is in them.\n"
       "{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
       "at the end", "value", "± fit", "± potential", "moves by", "the fit's from");
+  std::string none;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
     if (o.name == "step" || o.name == "time_ps") continue;
     const RunErrors::Value value = [k](const LogRow& row) { return row.values()[k]; };
     const ResultError e = errors.of(log.size() - 1, value);
-    if (!std::isfinite(e.error) || e.error == 0) continue;
+    if (!has_influence(e, log, value)) {
+      if (e.error > 0) none += fmt::format("{}{}", none.empty() ? "" : ", ", o.name);
+      continue;
+    }
     double sum = 0;
     for (const double part : e.parts) sum += part * part;
     std::vector<std::pair<double, std::string>> shares;
@@ -52,6 +56,7 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
                value_text(value(log.back()), std::max(e.error, moves)), e.error, e.potential, moves, from,
                e.linear ? "" : "; not linear: an estimate of its size only");
   }
+  if (!none.empty()) fmt::print("No influence beyond rounding on {}.\n", none);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ class CsvReader {
   // Comments before this line, without # and the spaces after it.
   const std::vector<std::string_view>& comments() const { return comments_; }
   std::string_view line_text() const { return line_; }
+  int line_number() const { return number_; }
 
   // A number of this line, NaN and infinities too. Throws InputError with `remedy`.
   double number(std::size_t cell, std::string_view column, const char* remedy = "write a number") const;

@@ -29,7 +29,10 @@ Chirality chirality_in(const TomlTable& t, const char* key) {
   return c;
 }
 
-std::vector<PairFriction> frictions_in(const fs::path& folder) {
+// Whoever made a file, its name may begin like this. Ours has the format in it, also where it is damaged.
+bool is_ours(const std::string& text) { return text.find("ropewalk-friction-") != std::string::npos; }
+
+std::vector<std::string> candidates_in(const fs::path& folder) {
   std::vector<std::string> paths;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
@@ -38,8 +41,13 @@ std::vector<PairFriction> frictions_in(const fs::path& folder) {
       paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::vector<PairFriction> frictions_in(const fs::path& folder) {
   std::vector<PairFriction> all;
-  for (const std::string& path : paths) all.push_back(read_friction(path));
+  for (const std::string& path : candidates_in(folder))
+    if (const std::string text = read_file(path); is_ours(text)) all.push_back(friction_of_text(text, path));
   return all;
 }
 
@@ -138,6 +146,15 @@ Grade grade_of(const PairFriction& f) {
 }
 
 PairFriction read_friction(const std::string& path) { return friction_of_text(read_file(path), path); }
+
+std::vector<std::string> strange_friction_files(const std::vector<std::string>& folders) {
+  std::vector<std::string> strange;
+  for (const std::string& folder : folders)
+    for (const std::string& path : candidates_in(folder))
+      if (!is_ours(read_file(path)) && std::find(strange.begin(), strange.end(), path) == strange.end())
+        strange.push_back(path);
+  return strange;
+}
 
 std::string friction_text(const PairFriction& f, const std::string& comment) {
   std::string text =

@@ -41,6 +41,8 @@ Grade grade_of(const PairFriction& friction);
 // Throws InputError.
 PairFriction read_friction(const std::string& path);
 PairFriction friction_of_text(const std::string& text, const std::string& path);
+// Files friction-*.toml in the folders that are none of this program's: the functions below pass over them.
+std::vector<std::string> strange_friction_files(const std::vector<std::string>& folders);
 // From names, quantities and provenance, below `comment`.
 std::string friction_text(const PairFriction& friction, const std::string& comment);
 

@@ -19,7 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "ropewalk-errors-1";
-constexpr double unlike = 1e-3;  // of the value: a smaller effect is of no interest, linear or not
+constexpr double rounding = 1e-9;  // of the value, and of 1 in its unit
+constexpr double unlike = 1e-3;    // of the value: a smaller effect is of no interest, linear or not
 
 LogRow nothing() {
   LogRow row;
@@ -98,6 +99,13 @@ double movement(const std::vector<LogRow>& log, const RunErrors::Value& value) {
   for (std::size_t k = first; k < log.size(); ++k)
     most = std::max(most, std::fabs(value(log[k]) - y - (tt > 0 ? ty / tt : 0) * (log[k]["time_ps"] - t)));
   return most;
+}
+
+bool has_influence(const ResultError& error, const std::vector<LogRow>& log, const RunErrors::Value& value) {
+  double largest = 1;
+  for (const LogRow& row : log)
+    if (const double v = value(row); std::isfinite(v)) largest = std::max(largest, std::fabs(v));
+  return std::isfinite(error.error) && error.error > rounding * largest;
 }
 
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {

@@ -63,6 +63,10 @@ class RunErrors {
 // them. The last rows are a tenth of the log, at least eight. 0 for a log of fewer than four rows.
 double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
 
+// Whether the parameters act on a value at all: its error is more than rounding beside the largest value in the
+// log.
+bool has_influence(const ResultError& error, const std::vector<LogRow>& log, const RunErrors::Value& value);
+
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
 // Writes the file that read_run_errors reads, with the errors of all observables at the end.

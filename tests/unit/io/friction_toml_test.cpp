@@ -107,6 +107,22 @@ TEST(FrictionToml, OwnFilesStandBesideTheScene) {
   EXPECT_EQ(friction_between({10, 10}, {10, 10}, folders, place).name, "friction-10-10-10-10-tersoff");
   EXPECT_EQ(find_friction("friction-mine", folders, place).name, "friction-mine");
   EXPECT_EQ(find_friction("friction-mine.toml", folders, place).name, "friction-mine");
+  // A stranger's file is passed over, and one of ours that is damaged is refused by its name.
+  const std::string strange = (folder / "friction-factors.toml").string();
+  write_file_atomically(strange, "steel_on_ice = 0.03\n");
+  EXPECT_EQ(friction_between({10, 10}, {17, 0}, folders, place).name, "friction-mine");
+  EXPECT_THAT(strange_friction_files(folders), ::testing::ElementsAre(strange));
+  EXPECT_THROW(find_friction("friction-factors.toml", folders, place), InputError) << "named";
+  for (const std::string& damage : {with("[17, 0]", "[17"), with("ropewalk-friction-1", "ropewalk-friction-0")}) {
+    write_file_atomically(strange, damage);
+    try {
+      friction_between({10, 10}, {17, 0}, folders, place);
+      ADD_FAILURE() << "a damaged file was read";
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.place().file, strange);
+    }
+  }
+  fs::remove(strange);
   // As in the directory of a run.
   fs::rename(folder / "friction-mine.toml", folder / "friction-0.toml");
   EXPECT_EQ(find_friction("elsewhere/friction-mine.toml", folders, place).name, "friction-mine");
@@ -133,6 +149,10 @@ TEST(FrictionToml, AScenesFrictionComesFromAtomsAndSaysWhatIsAnEstimate) {
   EXPECT_THAT(all, HasSubstr("an estimate: (12,12) beside (12,12) was not measured"));
   EXPECT_THAT(all, HasSubstr("of atoms (friction-17-0-17-0-tersoff, good)"));
   EXPECT_THAT(words("from = \"atoms\"\ntypes = [1, 1]\n"), ::testing::Not(HasSubstr("types 0")));
+  const std::string two = words("from = \"atoms\"\n[[friction]]\nstrength_pN_per_nm = 7\ntypes = [1, 0]\n");
+  EXPECT_THAT(two, HasSubstr("between types 1 and 0, dry: 7 pN/nm"));
+  EXPECT_THAT(two, ::testing::Not(HasSubstr("between types 0 and 1")));
+  EXPECT_THAT(two, HasSubstr("between types 1 and 1"));
   const auto refused = [&](const std::string& friction) -> std::string {
     try {
       words(friction);

@@ -28,6 +28,17 @@ TEST(Movement, IsThatAboutALine) {
   EXPECT_EQ(movement(log_of(3, [](double t) { return std::sin(t); }), torque), 0);
 }
 
+TEST(Influence, IsMoreThanRounding) {
+  const auto of = [](double error) { return ResultError{error, 0, true, {}}; };
+  const std::vector<LogRow> nothing = log_of(9, [](double) { return 0.0; }),
+                            large = log_of(9, [](double t) { return 1e4 * t; });
+  EXPECT_FALSE(has_influence(of(9e-12), nothing, torque));
+  EXPECT_TRUE(has_influence(of(1e-6), nothing, torque)) << "of a value that happens to be 0 at the end";
+  EXPECT_FALSE(has_influence(of(1e-6), large, torque));
+  EXPECT_TRUE(has_influence(of(1e-3), large, torque));
+  EXPECT_FALSE(has_influence(of(std::nan("")), large, torque));
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk
