@@ -39,6 +39,7 @@ const std::string whole_header = column_names(columns);
 const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // of a quaternion
+constexpr double norm_rounding = 1e-14;                   // of its square, in which it stays as it is
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 // Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of
 // half or twice the length lie beyond them.
@@ -287,7 +288,7 @@ class StateReader {
       fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
     return {tube_number(value[0]),
             {value[1], value[2], value[3]},
-            q.normalized(),
+            std::fabs(q.squaredNorm() - 1) <= norm_rounding ? q : q.normalized(),
             {value[8], value[9], value[10]},
             {value[11], value[12], value[13]}};
   }

@@ -16,6 +16,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -199,5 +200,6 @@ TEST_F(Stops, AtALimitAndByARule) {
   expect_whole(files_of("whole"), "a rule");
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

@@ -14,6 +14,7 @@
 
 namespace ropewalk {
 namespace {
+namespace UNIT {
 
 namespace fs = std::filesystem;
 
@@ -67,5 +68,6 @@ TEST(WayBack, ADeviceDividesTheStepsThatTheProcessorDivides) {
   fs::remove_all(dir);
 }
 
+}  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk
