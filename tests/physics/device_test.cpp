@@ -273,9 +273,10 @@ Rounds rounds_of(const Prepared& p, const State& s, const DeviceStepper::Neighbo
   return sum;
 }
 
-// Figures of docs/performance.md. Both single precisions are off by some 1e-4 of the largest force.
+// Figures of docs/performance.md. Both single precisions are off by some 1e-4 of the largest force. The device has the
+// table of AVX-512, whose errors there are 3.8e-4 and 5.8e-4; other processors have the pieces, with smaller errors.
 TEST(Device, ErrorsAndWorkInARope) {
-  for (const char* const name : {"rope-91x50", "rope-91x50-twisted"}) {
+  for (const auto& [name, by_table] : {std::pair{"rope-91x50", 3.8e-4}, {"rope-91x50-twisted", 5.8e-4}}) {
     SCOPED_TRACE(name);
     Scene scene = bench_scene(name, "line");
     const Prepared p = prepare(scene);
@@ -295,7 +296,8 @@ TEST(Device, ErrorsAndWorkInARope) {
         "%s: largest force %.2g eV/nm; errors over it: device %.2g, processor %.2g; sum of all forces: device %.1g "
         "eV/nm, processor %.1g\n",
         name, largest(exact.force), device.force, processor.force, net, net_of_processor);
-    EXPECT_LT(device.force, 1.5 * processor.force);
+    EXPECT_LT(device.force, 1.5 * by_table);
+    EXPECT_LT(processor.force, 1.5 * by_table);
     EXPECT_LT(net, 3e-3);
 
     DeviceStepper::Neighbours list = [&] {
