@@ -888,8 +888,10 @@ TEST_F(Cli, BlowUpStopsWithAWrittenState) {
   EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
   EXPECT_TRUE(fs::exists(dir / "d/failed-state.csv"));
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "failed");
-  // The written state can be read again.
-  EXPECT_EQ(run("energy d/failed-state.csv --parameters cnt-10-10-paper --json").code, 0);
+  // The written state can be read again, and has what the run ended by.
+  const Outcome again = run("energy d/failed-state.csv --parameters cnt-10-10-paper --json");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.err.find("is twisted by 90 degrees or more, where it slips"), std::string::npos) << again.err;
 }
 
 TEST_F(Cli, EnergyGivesForcesThatSumToZeroAndEqualTheReference) {
