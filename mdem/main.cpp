@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
@@ -84,7 +85,7 @@ void add_on_limit(CLI::App* c, std::string& word) {
       ->check(CLI::IsMember({"warn", "stop", "refine"}));
 }
 
-void add_end(CLI::App* c, long& steps, double& until_ps) {
+void add_end(CLI::App* c, std::int64_t& steps, double& until_ps) {
   CLI::Option* count = c->add_option("--steps", steps, "Stop at this time step")->check(whole_number(0));
   c->add_option("--until", until_ps, "Stop at this time (ps) instead of the scene's")
       ->check(number_within(Bounds::non_negative()))

@@ -49,7 +49,7 @@ constexpr int max_counted = 16000;  // elements
 
 StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after, long steps) {
   Simulation simulation = start(scene, prepared);
-  simulation.steps(std::lround(after / prepared.time_step), false);
+  simulation.steps(std::llround(after / prepared.time_step), false);
   simulation.steps(std::max(5L, steps / 10), false);  // warm caches
   StepCost c;
   const StepTiming before = timing(simulation, 0, 0);

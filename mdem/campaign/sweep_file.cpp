@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -234,7 +235,8 @@ void keep_free_length(const Sweep& s, const std::string& before, double length, 
         !(length > 1e-3 * scene.element_length) || (s.zip && std::any_of(s.axes.begin(), s.axes.end(), same)))
       return;
     const int held = elements_held(scene, 0), free = scene.source->sizes(scene.element_length).elements - held;
-    const long elements = std::max(1L, std::lround(free * scene.element_length / length)) + held;
+    const std::int64_t elements =
+        std::max<std::int64_t>(1, std::llround(free * scene.element_length / length)) + held;
     text = with_value(text, key,
                       size.tube_size == SceneKey::TubeSize::elements
                           ? std::to_string(elements)

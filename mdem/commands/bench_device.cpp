@@ -25,7 +25,7 @@ int bench_device(const BenchArguments& a) {
   const double after = a.after < 0 ? bench_after(a.scene) : a.after;
   Simulation simulation = start(scene, prepared);
   use_device(simulation, a.device);
-  simulation.steps(std::lround(after / prepared.time_step), false);
+  simulation.steps(std::llround(after / prepared.time_step), false);
   simulation.steps(std::max(5L, a.steps / 10), false);
   const long lists = simulation.list().builds();
   const double listed = simulation.list_seconds(), began = omp_get_wtime();

@@ -2,6 +2,7 @@
 // and turned into one line by main.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ struct RunArguments {
   std::string scene;
   std::string out;
   int threads = 0;                // 0: all cores
-  long steps = -1;                // time step at which to stop; -1: the scene's end
+  std::int64_t steps = -1;        // time step at which to stop; -1: the scene's end
   double until_ps = -1;           // time at which to stop; -1: the scene's end
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
   std::string wall_time;          // see seconds_of_wall_time(); empty: any
@@ -28,8 +29,8 @@ int run_command(const RunArguments& arguments);
 struct ResumeArguments {
   std::string dir;
   int threads = 0;
-  long steps = -1;       // as of RunArguments
-  double until_ps = -1;  // likewise
+  std::int64_t steps = -1;  // as of RunArguments
+  double until_ps = -1;     // likewise
   std::string on_limit = "warn";
   std::string wall_time;        // likewise
   std::string instructions;     // empty: those that the run was begun with

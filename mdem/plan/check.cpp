@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "observe/bending.hpp"
@@ -143,8 +144,9 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
     observed.add(s);
     return observed.means();
   }
-  const long steps = std::max(2L, std::lround(stretch / m.time_step)), every = std::max(1L, steps / (2 * samples));
-  for (long k = 1; k <= steps; ++k) {
+  const auto steps = std::max<std::int64_t>(2, std::llround(stretch / m.time_step)),
+             every = std::max<std::int64_t>(1, steps / (2 * samples));
+  for (std::int64_t k = 1; k <= steps; ++k) {
     const bool read = 2 * k > steps && (steps - k) % every == 0;
     s.step(read);
     if (read) observed.add(s);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "plan/scene_edit.hpp"
@@ -74,11 +75,11 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   if (std::fabs(wanted / old - 1) < 1e-6) return;
   const int held = elements_held(scene_, 0);
   const double free = (elements_of(scene_) - held) * old;
-  const long parts = std::max(2L, std::lround(free / wanted));
+  const std::int64_t parts = std::max<std::int64_t>(2, std::llround(free / wanted));
   const double length = free / static_cast<double>(parts);
   set("", "element_length_nm", fmt::format("{:.10g}", length), why);
   keep_dissipation(length);
-  const long now = parts + held;
+  const std::int64_t now = parts + held;
   const SceneKey size = tube_size_key(scene_);
   set(size.table, size.key,
       size.tube_size == SceneKey::TubeSize::elements ? std::to_string(now)
@@ -97,7 +98,8 @@ void PlannedScene::keep_dissipation(double length) {
 
 void PlannedScene::finish() {
   if (nodes_per_nm_ > 0) {
-    const long nodes = std::max(1L, std::lround(nodes_per_nm_ * scene_of_text(text_, scene_.path).element_length));
+    const int nodes = std::max(
+        1, static_cast<int>(std::lround(nodes_per_nm_ * scene_of_text(text_, scene_.path).element_length)));
     set("contact", "nodes_per_element", std::to_string(nodes), nodes_why_);
   }
   if (step_ > 0) {

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "model/error.hpp"
@@ -86,7 +87,7 @@ struct ThreadsAsBefore {
 };
 
 struct Asked {
-  std::optional<long> steps;
+  std::optional<std::int64_t> steps;
   std::optional<double> until_ps;
   std::optional<int> threads;
   std::string on_limit;
@@ -161,8 +162,8 @@ void resume(const std::string& directory, bool accept_changes, const Asked& aske
 
 void bind_runs(py::module_& m) {
   py::class_<Asked>(m, "RunOptions")
-      .def(py::init([](std::optional<long> steps, std::optional<double> until_ps, std::optional<int> threads,
-                       const std::string& on_limit, std::optional<double> wall_time_s,
+      .def(py::init([](std::optional<std::int64_t> steps, std::optional<double> until_ps,
+                       std::optional<int> threads, const std::string& on_limit, std::optional<double> wall_time_s,
                        const std::string& instructions, const std::string& device, const py::object& tell,
                        const py::object& progress) {
              return Asked{steps, until_ps, threads, on_limit, wall_time_s, instructions, device, tell, progress};

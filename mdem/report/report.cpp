@@ -459,7 +459,7 @@ std::string carried_errors(const ReportInput& in) {
     if (o.name == "step" || o.name == "time_ps") continue;
     const RunErrors::Value value = [k](const LogRow& row) { return row.values()[k]; };
     const ResultError e = in.errors.of(in.log.size() - 1, value);
-    if (!std::isfinite(e.error) || e.error == 0) continue;
+    if (!has_influence(e, in.log, value)) continue;
     const double moves = movement(in.log, value);
     std::string remark = e.linear ? "" : "not linear in the parameters: an estimate of its size only";
     if (moves > e.error)

@@ -192,7 +192,7 @@ DepthBuffer mark_visible(std::vector<SeenTube>& tubes, const std::vector<double>
 // --- Pieces -----------------------------------------------------------------------------------------------
 
 struct Spot {
-  long x, y;
+  int x, y;
 };
 
 double distance_from_chord(const Spot& p, const Spot& a, const Spot& b) {
@@ -219,7 +219,7 @@ void simplify(const std::vector<Spot>& in, std::size_t first, std::size_t last, 
   simplify(in, at, last, tolerance, out);
 }
 
-void append_number(std::string& d, long v, bool separate) {
+void append_number(std::string& d, int v, bool separate) {
   if (separate && v >= 0) d += ' ';
   fmt::format_to(std::back_inserter(d), "{}", v);
 }
@@ -258,7 +258,8 @@ struct Painter {
     return {layer, s.size, std::min(moment_colours - 1, static_cast<int>(std::min(at, 1.0) * moment_colours))};
   }
   Spot spot(double x, double y) const {
-    return {std::lround((x - camera.left) * per_nm), std::lround((top - y) * per_nm)};
+    return {static_cast<int>(std::lround((x - camera.left) * per_nm)),
+            static_cast<int>(std::lround((top - y) * per_nm))};
   }
 
   // Extends a piece a little beyond its ends and draws it from its far end to its near end; see paint_layer.
@@ -333,7 +334,8 @@ Rgb mix(const Rgb& a, const Rgb& b, double at) {
 }
 
 std::string hex(const Rgb& c) {
-  return fmt::format("#{:02x}{:02x}{:02x}", std::lround(c.r), std::lround(c.g), std::lround(c.b));
+  return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(std::lround(c.r)), static_cast<int>(std::lround(c.g)),
+                     static_cast<int>(std::lround(c.b)));
 }
 
 std::string body_colour(bool coloured, int colour, double depth) {  // depth 0: back, 1: front
@@ -353,7 +355,7 @@ std::string define_layer(const PathRange& paths, const std::string& id) {
 // Outline, body and highlight. The outline leaves out the beginning of every piece, where it would show as a seam
 // on the piece behind. The opacity belongs to the group of highlights, so that overlaps of pieces do not show.
 std::string paint_layer(const PathRange& paths, const std::string& id, double radius, bool coloured, double depth) {
-  const auto width = [&](double radii) { return std::lround(radii * radius * per_nm); };
+  const auto width = [&](double radii) { return static_cast<int>(std::lround(radii * radius * per_nm)); };
   std::string text = fmt::format(
       "<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\" "
       "stroke-dasharray=\"999999\" stroke-dashoffset=\"-{}\"/><g stroke-width=\"{}\">",
@@ -367,7 +369,7 @@ std::string paint_layer(const PathRange& paths, const std::string& id, double ra
 
 std::string paint_link(const std::string& path, double radius) {
   return fmt::format("<path d=\"{}\" stroke=\"#e0281e\" stroke-width=\"{}\" stroke-linecap=\"round\"/>\n", path,
-                     std::lround(0.5 * radius * per_nm));
+                     static_cast<int>(std::lround(0.5 * radius * per_nm)));
 }
 
 // Links come after the layer of the nearer one of their tubes.

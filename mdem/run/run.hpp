@@ -1,6 +1,7 @@
 // A run of a scene: its loop, and its files from the first to the last.
 #pragma once
 
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <string>
@@ -48,7 +49,7 @@ class Run {
 
   // Throws InputError for settings that the run could not carry out.
   void check_before_start() const;
-  void end_at(long steps, double ps) { parts_.schedule.end_at(steps, ps); }
+  void end_at(std::int64_t steps, double ps) { parts_.schedule.end_at(steps, ps); }
   // Throws InputError for an end that lies behind a run that goes on.
   void check_end_lies_ahead() const;
   void hold(DirectoryLock lock) { parts_.files.hold(std::move(lock)); }

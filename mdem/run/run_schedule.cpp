@@ -8,11 +8,11 @@
 namespace ropewalk {
 namespace {
 
-constexpr long window_of_a_device = 2048;  // steps
+constexpr std::int64_t window_of_a_device = 2048;  // steps
 
-long every(double interval, double duration, long parts, double time_step) {
-  const double chosen = interval > 0 ? interval : duration / static_cast<double>(parts);
-  return std::max(1L, std::lround(chosen / time_step));
+std::int64_t every(double interval, double duration, int parts, double time_step) {
+  const double chosen = interval > 0 ? interval : duration / parts;
+  return std::max<std::int64_t>(1, std::llround(chosen / time_step));
 }
 
 }  // namespace
@@ -38,21 +38,21 @@ void RunSchedule::look_rarely() { window_ = window_of_a_device; }
 
 // Steps are counted from zero, but where the time step was another one before.
 std::int64_t RunSchedule::step_at(double ps) const {
-  return counted_from_.step + std::lround((ps - counted_from_.time) / counted_from_.time_step);
+  return counted_from_.step + std::llround((ps - counted_from_.time) / counted_from_.time_step);
 }
 
-void RunSchedule::end_at(long steps, double ps) {
+void RunSchedule::end_at(std::int64_t steps, double ps) {
   if (ps >= 0 && relaxes_) throw InputError({"", 0, "--until"}, "a relaxation has no time", "take --steps");
   if (ps >= 0) last_step_ = step_at(ps);
   if (steps >= 0) last_step_ = steps;
 }
 
-long RunSchedule::steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const {
-  long count = last_step_ - step;
-  if (scene_end_ > step) count = std::min<long>(count, scene_end_ - step);
-  for (const long interval : {log_every_, frames_every_, pause_every, static_cast<long>(window(closely))})
-    count = std::min<long>(count, interval - step % interval);
-  return std::min(count, std::max(2L, static_cast<long>(patience / seconds_of_a_step)));
+std::int64_t RunSchedule::steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const {
+  std::int64_t count = last_step_ - step;
+  if (scene_end_ > step) count = std::min(count, scene_end_ - step);
+  for (const std::int64_t interval : {log_every_, frames_every_, pause_every, window(closely)})
+    count = std::min(count, interval - step % interval);
+  return std::min(count, std::max<std::int64_t>(2, static_cast<std::int64_t>(patience / seconds_of_a_step)));
 }
 
 }  // namespace ropewalk

@@ -14,7 +14,7 @@ class RunSchedule {
   RunSchedule(const Scene& scene, const Prepared& prepared);
 
   // The end at a step or a time (ps); negative: not asked for. Throws InputError for the time of a relaxation.
-  void end_at(long steps, double ps);
+  void end_at(std::int64_t steps, double ps);
   // From this step and time (ps) on steps are of this length (ps). The end is the scene's.
   void count_from(std::int64_t step, double time, double time_step);
 
@@ -37,12 +37,12 @@ class RunSchedule {
   bool looks_rarely() const { return window_ > StepControl::window; }
   static bool has_pause(std::int64_t step) { return step % pause_every == 0; }  // for a checkpoint, if one is due
   // Steps until something is written or checked, or a request to stop has waited for `patience`.
-  long steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const;
+  std::int64_t steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const;
 
   static constexpr double patience = 0.5;  // s, of a request to stop a run
 
  private:
-  static constexpr long pause_every = 16;
+  static constexpr std::int64_t pause_every = 16;
 
   std::int64_t step_at(double ps) const;
   std::int64_t window(bool closely) const { return closely ? StepControl::window : window_; }  // between two marks
@@ -53,7 +53,7 @@ class RunSchedule {
     std::int64_t step = 0;
     double time = 0, time_step = 0;
   } counted_from_;
-  long log_every_ = 1, frames_every_ = 1, window_ = StepControl::window;
+  std::int64_t log_every_ = 1, frames_every_ = 1, window_ = StepControl::window;
   std::int64_t last_step_ = -1, scene_end_ = -1;
   std::size_t expected_frames_ = 0;
 };

@@ -1,6 +1,7 @@
 // Settings of a run besides its scene.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "run/limit_watch.hpp"
@@ -9,8 +10,8 @@
 namespace ropewalk {
 
 struct RunSettings {
-  long steps = -1;       // time step at which it stops; -1: the scene's end
-  double until_ps = -1;  // time at which it stops; -1: the scene's end
+  std::int64_t steps = -1;  // time step at which it stops; -1: the scene's end
+  double until_ps = -1;     // time at which it stops; -1: the scene's end
   OnLimit on_limit = OnLimit::warn;
   WallTime wall_time;
   bool force = false;  // replace an earlier run

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -21,8 +22,8 @@
 #include "run/colours.hpp"
 #include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
-#include "scene/wound.hpp"
 #include "scene/watch.hpp"
+#include "scene/wound.hpp"
 
 namespace ropewalk {
 namespace {
@@ -72,8 +73,8 @@ double seconds_turned_by(const Scene& scene, const Prepared& p, double turn, dou
 
 // Mean over ramp and hold.
 double seconds_in_turned_rope(const Scene& scene, const Prepared& p, const SceneFeatures& f) {
-  const double ramp = std::min(f.ramp, p.duration), share = p.duration > 0 ? ramp / p.duration : 0.0;
-  const double turn = f.ramp > 0 ? f.turn * ramp / f.ramp : f.turn;
+  const double ramp = std::min(f.ramp(), p.duration), share = p.duration > 0 ? ramp / p.duration : 0.0;
+  const double turn = f.ramp() > 0 ? f.turn * ramp / f.ramp() : f.turn;
   double seconds = 0;
   if (share > 0) seconds += share * seconds_turned_by(scene, p, 0.5 * turn, turn / ramp, 0.5 * ramp);
   if (share < 1) seconds += (1 - share) * seconds_turned_by(scene, p, turn, 0, ramp);
@@ -108,7 +109,7 @@ Outputs time_outputs(const Scene& scene, const Prepared& p, const RunTime& t) {
   Outputs o;
   const Simulation s = start(scene, p);
   const Observer observer = make_observer(scene, p);
-  LimitWatch watch(watched_of(scene, p.topology, p.interaction.law.get()));
+  LimitWatch watch(watched_of(scene, p.topology, p.loads, p.interaction.law.get()));
   const double began = processor_seconds();
   const LogRow row = log_row(observer, scene, p.topology, s.state(), {});
   watch.check(p.topology, s.state(), s.list(), {}, false);
@@ -134,7 +135,7 @@ class Nobody : public RunListener {
 };
 
 // Processor time of the first steps of a run, with all its files. Throws where it fails.
-double seconds_of_a_run(const std::string& text, const std::string& path, long steps) {
+double seconds_of_a_run(const std::string& text, const std::string& path, std::int64_t steps) {
   const TemporaryFolder scratch;
   const std::string seconds = scratch.file("seconds");
   bool ended = false;
@@ -176,7 +177,7 @@ void time_outputs_of_a_run(const std::string& text, const std::string& path, con
     brief = with_key(brief, "run", "log_every_ps", fmt::format("{:.17g}", p.time_step));
     brief = with_key(brief, "run", "frames_every_ps", fmt::format("{:.17g}", apart * p.time_step));
   }
-  const double seconds = seconds_of_a_run(brief, path, std::lround(steps));
+  const double seconds = seconds_of_a_run(brief, path, std::llround(steps));
   t.outputs = std::max(0.0, seconds - std::floor(steps) * t.each) + (all.rows - some.rows) * all.row +
               (all.frames - some.frames) * all.frame;
 }

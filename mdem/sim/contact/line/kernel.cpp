@@ -27,7 +27,7 @@ struct Lanes;
 template <>
 struct Lanes<float> {
   using D = ops::CappedTag<float, 16>;
-  static VEC_INLINE std::int32_t coordinate(double x) { return static_cast<std::int32_t>(std::lrint(x)); }
+  static VEC_INLINE std::int32_t coordinate(double x) { return static_cast<std::int32_t>(std::llrint(x)); }
   static VEC_INLINE ops::Vec<D> difference(const std::int32_t* x, std::int32_t from) {
     const ops::RebindToUnsigned<D> modulo;
     const auto to = ops::Load(modulo, reinterpret_cast<const std::uint32_t*>(x)),

@@ -11,7 +11,7 @@ template <class T>
 void PaperElements<T>::place(const Vec3Array& position, const Vec3Array& axis, std::size_t begin, std::size_t end) {
   const double per_unit = 1 / unit;
   const auto coordinate = [&](double v) {
-    if constexpr (sizeof(T) == 4) return static_cast<Coordinate>(std::lrint(v * per_unit));
+    if constexpr (sizeof(T) == 4) return static_cast<Coordinate>(std::llrint(v * per_unit));
     return static_cast<Coordinate>(v);
   };
   for (std::size_t i = begin; i < end; ++i) {
