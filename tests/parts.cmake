@@ -45,6 +45,10 @@ else()
     -Cli.PlanRunAndCheck* Cli.ErrorsOfTheSet*)
   set(only_lammps LammpsErrors.* LammpsRun.ThereAndBack* LammpsRun.GoesOnFromTheLast* LammpsRun.Import*
     LammpsRun.RanksWithout* *FiveStatesTest.ForcesEnergies* *ProtocolTest.*)
+  # Scenes of some seconds, which take a minute here; shorter ones of the same terms stay.
+  set(long_unit Campaigns.* Stops.* SlidingRope.* EndDrives.* EndContact.IsTheSum* Links.OfTwoTables* Failure.SameBits*
+    Failure.TheAccount* Failure.LimitsAre* Failure.StoredEvents* Film.RestingTubesHave* Film.NothingIsCloser*
+    Line/ForcesTest.FastEqualsReferenceFarFromTheOrigin/*ManyNodes)
   set(long_physics "*")
   set(fifths_physics 1)
   set(long_lammps "*")
