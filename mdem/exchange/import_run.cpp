@@ -136,10 +136,12 @@ class Import {
     marked_at_ = step;
   }
 
-  // Readings by the forces of this moment: LAMMPS keeps no means.
+  // Readings by the forces of this moment: LAMMPS keeps no means. The run may have been stopped between two rows: what
+  // it had summed up since the last one belongs to no row.
   EndReadings readings_at(const State& state) {
     gauges_.follow(state);
     gauges_.forget_work();
+    for (Gauges::Sum& sum : gauges_.sums.of) sum.force_time = sum.torque_time = {};
     gauges_.sums.since = state.time;
     std::vector<PointLoad> loads;
     point_loads(prepared_.loads, state, state.time, loads);
