@@ -60,9 +60,12 @@ TEST_F(FollowingStep, IsTheSameOnOtherThreadsAndAfterAResume) {
   // Before, in the middle of and after the windows that are run again.
   for (const int at : {3, 6, 100, 128, 150, 300}) {
     SCOPED_TRACE(at);
-    ASSERT_EQ(run(fmt::format("run s.toml --out part --force --quiet --steps {}", at)).code, 0);
+    // 7: it stands within a window that the whole run goes through again, with the tubes far inside of one another.
+    const int code = run(fmt::format("run s.toml --out part --force --quiet --steps {}", at)).code;
+    ASSERT_TRUE(code == 0 || code == 7) << code;
     ASSERT_EQ(run("resume part --quiet").code, 0);
-    EXPECT_EQ(slurp(dir / "whole" / "final.csv"), slurp(dir / "part" / "final.csv"));
+    for (const char* file : {"final.csv", "log.csv", "limits.json"})
+      EXPECT_EQ(slurp(dir / "whole" / file), slurp(dir / "part" / file)) << file;
   }
 }
 
