@@ -1,4 +1,4 @@
-// Signals as a program finds them in a terminal.
+// Sets the signals to the dispositions that a terminal gives a program, for tests that send them.
 #pragma once
 
 #include <csignal>

@@ -152,7 +152,7 @@ std::string TrialHashes::of(double value) const {
 
 namespace {
 
-// What drives the ends of the rope at this value.
+// The drives of the rope's ends in the trial with this value of the key.
 EndDrives drives_at(const Sweep& sweep, const SweepPoint& point, double value) {
   Scene scene = scene_of_text(trial_text(sweep, point, value), sweep.scene_path);
   const Prepared p = prepare(scene);

@@ -16,8 +16,8 @@
 #include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
-#include "scene/state_files.hpp"
 #include "scene/state_csv.hpp"
+#include "scene/state_files.hpp"
 #include "sim/dynamics/end_drives.hpp"
 #include "sim/state/part_of_scene.hpp"
 

@@ -20,7 +20,7 @@ FUNCTION Vec vec_cross(Vec a, Vec b) {
 }
 FUNCTION double vec_norm2(Vec a) { return vec_dot(a, a); }
 
-// As std::min and std::max: a where b is NaN, or equal.
+// These functions return what std::min and std::max do: a where b is NaN or equal.
 FUNCTION double smaller(double a, double b) { return b < a ? b : a; }
 FUNCTION double larger(double a, double b) { return a < b ? b : a; }
 FUNCTION double within(double x, double low, double high) { return smaller(larger(x, low), high); }

@@ -52,7 +52,7 @@ struct SlidingRope {
   double moment_of_gain(double wanted, double winding, double rate, double hold) const;
 };
 
-// What theory says of a scene whose ends are loaded by couples.
+// The theory of the helix for a scene whose ends are loaded by couples.
 struct HelixTheory {
   SlidingRope rope;
   double tubes_in_unit = 1;       // the moment of the scene over that of one tube

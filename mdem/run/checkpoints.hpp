@@ -35,7 +35,7 @@ class Checkpoints {
   // The same, written by save_kept().
   void keep_here(StopReason ends_for);
   void save_kept();
-  // What a run that stops leaves beside log and frames.
+  // Writes the files that a stopped run leaves beside log and frames: final state, limits, events.
   void write_results();
   // The run broke off: the last good state is saved if it is newer than the checkpoint.
   void save_mark() const;

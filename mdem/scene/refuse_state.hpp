@@ -1,4 +1,4 @@
-// What every state must be that somebody evaluates, moves or looks at, wherever it comes from.
+// Checks of a state, the same in every verb that evaluates, moves or measures it.
 #pragma once
 
 #include "model/error.hpp"

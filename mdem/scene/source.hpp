@@ -40,7 +40,7 @@ class Source {
   virtual bool draws_together(bool /*unlike*/) const { return false; }
   // The file that the elements are read from; empty: no file.
   virtual std::string file() const { return ""; }
-  // What force terms and tubes remember there.
+  // The internal state of force terms and the broken bonds that the file stores.
   virtual StateMemory memory() const { return {}; }
   // The key that LAMMPS cannot carry; empty: it can.
   virtual std::string not_for_lammps() const { return ""; }

@@ -20,7 +20,7 @@ StateFiles state_files(const Simulation& simulation, const std::string& state_pa
 // The terms of a scene begin with the memory of its state file. Throws InputError where that would be another one
 // than they have, or where it is missing.
 void begin_with(const StateMemory& memory, const Topology& topology, Interaction& interaction);
-// What of the scene begins anew, and what of the memory it does without; a sentence each.
+// One sentence for each force term that begins without a stored state, and for each stored state that no term uses.
 std::vector<std::string> forgotten(const StateMemory& memory, const Interaction& interaction);
 
 }  // namespace ropewalk

@@ -33,7 +33,7 @@ std::string sum_of_rows(const std::string& state) {
   return hash_hex(rows);
 }
 
-// Of this name.
+// The number of force terms with this name.
 std::size_t count_of(const std::vector<NamedMemory>& terms, const std::string& name) {
   return static_cast<std::size_t>(
       std::count_if(terms.begin(), terms.end(), [&](const NamedMemory& m) { return m.term == name; }));

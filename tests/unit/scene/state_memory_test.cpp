@@ -1,5 +1,4 @@
-// A scene that begins with the end of another one, as it was there: scene/state_memory.hpp, scene/state_files.hpp;
-// and with other noise.
+// A scene that starts from the final state of a run restores the states of its force terms, and has other noise.
 #include "scene/state_memory.hpp"
 
 #include <fmt/format.h>
@@ -194,7 +193,7 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / std::sqrt(xx * yy);
 }
 
-// Velocities of one component, at times that are far enough apart.
+// One component of velocity, sampled at intervals longer than its correlation time.
 std::vector<double> motion(Simulation s) {
   std::vector<double> out;
   for (int k = 0; k < 150; ++k) {
