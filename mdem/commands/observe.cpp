@@ -79,12 +79,13 @@ int observe_command(const ObserveArguments& a) {
   }
   if (!a.json) console.print_heading();
   Json all = Json::array();
+  const EnergyAccount none;
   StoredFrame frame;
   while (reader->next(prepared.topology, frame)) {
     const Topology now = breaks.tubes_at(frame.state.time);
     const RopeObservation rope = observe(observer, scene, now, frame.state);
     const Loading load = loading(now, frame.state, observer.loading);
-    const Measurement measurement{now, frame.state, rope, load, observer.mass, {}};
+    const Measurement measurement{now, frame.state, rope, load, observer.size, none};
     if (a.json) {
       all.push_back(as_json(measurement, chosen));
     } else {

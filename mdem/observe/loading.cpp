@@ -6,6 +6,7 @@
 #include <set>
 
 #include "observe/centre_line.hpp"
+#include "observe/rope_size.hpp"
 #include "sim/threads/for_each.hpp"
 
 namespace ropewalk {
@@ -54,20 +55,6 @@ double largest_curvature(const Topology& topology, const State& state, int tube)
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-// nm^2: for each strand a cell of the packing, of its own kind of tube where there are several.
-double area_of(const Topology& topology, const LoadingReference& reference) {
-  if (!(reference.cell > 0)) return none;
-  if (topology.types.size() < 2 || !reference.law) return reference.cell * topology.strands();
-  const Topology strands = strands_of(topology);
-  double sum = 0;
-  for (const int type : strands.tube_type) {
-    const double apart = reference.law->parallel_distance(
-        {type, type}, topology.types[static_cast<std::size_t>(type)].element_length);
-    sum += 0.5 * std::sqrt(3.0) * apart * apart;
-  }
-  return sum;
-}
-
 // Whether slip has a value: only between strands of one length that run the same way at the start.
 bool knows_slip(const Topology& topology, const LoadingReference& reference) {
   return topology.tubes() < 2 || !reference.radius.empty();
@@ -115,7 +102,7 @@ LoadingReference loading_reference(const Topology& tubes, const State& start, co
   out.ends_apart = (centre_of(tubes, start, ends[upper_end]) - centre_of(tubes, start, ends[lower_end])).norm();
   out.ends = std::move(ends);
   out.law = std::move(law);
-  out.cell = 0.5 * std::sqrt(3.0) * spacing * spacing;
+  out.cells = packing_cells(tubes, spacing, out.law.get());
   const int n = common_length(topology);
   if (n == 0 || !run_the_same_way(tubes, start)) return out;
   const Vector3 axis = centre_line(topology, start).tangents[static_cast<std::size_t>(n / 2)];
@@ -173,8 +160,13 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
   return out;
 }
 
-TubePressures::TubePressures(const Topology& topology, const State& state, const ContactLaw& law, double cell)
-    : topology_(topology), state_(state), law_(law), cell_(cell), grid_(state.position, law.cutoff()) {}
+TubePressures::TubePressures(const Topology& topology, const State& state, const ContactLaw& law,
+                             std::vector<double> cells)
+    : topology_(topology),
+      state_(state),
+      law_(law),
+      cells_(std::move(cells)),
+      grid_(state.position, law.cutoff()) {}
 
 double TubePressures::of(int tube) const {
   constexpr int most = 8;  // elements
@@ -200,13 +192,14 @@ double TubePressures::of(int tube) const {
       virial += force.dot(d) - force.dot(t) * d.dot(t);
     }
   }
-  return virial / (4 * cell_ * count * topology_.type_of(tube).element_length);
+  const double cell = cells_[static_cast<std::size_t>(topology_.tube_type[static_cast<std::size_t>(tube)])];
+  return virial / (4 * cell * count * topology_.type_of(tube).element_length);
 }
 
 std::vector<double> tube_pressures(const Topology& topology, const State& state,
                                    const LoadingReference& reference) {
   std::vector<double> out(static_cast<std::size_t>(topology.tubes()));
-  const TubePressures pressures(topology, state, *reference.law, reference.cell);
+  const TubePressures pressures(topology, state, *reference.law, reference.cells);
   for_each_uneven(topology.tubes(), 1, true, [&](int t) { out[static_cast<std::size_t>(t)] = pressures.of(t); });
   return out;
 }
@@ -215,7 +208,7 @@ std::vector<TubeLoading> tube_loadings(const Topology& topology, const State& st
                                        const LoadingReference& reference) {
   std::vector<TubeLoading> out(static_cast<std::size_t>(topology.tubes()));
   const std::vector<double> pressures =
-      reference.law && reference.cell > 0 ? tube_pressures(topology, state, reference) : std::vector<double>();
+      reference.knows_pressures() ? tube_pressures(topology, state, reference) : std::vector<double>();
   for_each_uneven(topology.tubes(), 1, true, [&](int t) {
     TubeLoading& tube = out[static_cast<std::size_t>(t)];
     const std::vector<double> pulls = tensions(topology, state, t);
@@ -261,11 +254,10 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   const Topology strands = strands_of(topology);
   for (const double slip : slips(strands, state, reference)) out.slip = std::max(out.slip, slip);
   if (!knows_slip(topology, reference)) out.slip = none;
-  out.area = area_of(topology, reference);
   out.core_pressure = none;
-  if (reference.law && !reference.core.empty() && reference.cell > 0) {
+  if (reference.knows_pressures() && !reference.core.empty()) {
     out.core_pressure = 0;
-    const TubePressures pressures(topology, state, *reference.law, reference.cell);
+    const TubePressures pressures(topology, state, *reference.law, reference.cells);
     // Of the tubes in the middle of these strands.
     for (const int s : reference.core)
       out.core_pressure += pressures.of(topology.tube_of(strands.tube_begin[s] + strands.length_of(s) / 2)) /

@@ -22,8 +22,10 @@ struct LoadingReference {
       offset;  // nm: element by element along each pair, the displacement of the second one against the first
   std::vector<double> radius;             // nm, of each tube from the axis of the rope; empty: no common length
   std::vector<int> core;                  // the internal strands nearest to the axis
-  double cell = 0;                        // nm^2, of the cross-section for each tube
+  std::vector<double> cells;              // nm^2, of the cross-section, by the type of a tube: packing_cells()
   std::shared_ptr<const ContactLaw> law;  // null: no contact
+
+  bool knows_pressures() const { return law && !cells.empty() && cells.front() > 0; }
 };
 LoadingReference loading_reference(const Topology& topology, const State& start, const RopeShells& shells,
                                    EndElements ends, double spacing, double neighbour_radius,
@@ -40,7 +42,6 @@ struct Loading {
   double curvature = 0;      // 1/nm, the largest
   double slip = 0;           // nm, the largest displacement of a tube along its neighbour since the start
   double core_pressure = 0;  // eV/nm^3; NaN where no tube is internal
-  double area = 0;           // nm^2, of the cross-section at the start: the cells of its strands; NaN for one tube
 };
 Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
 
@@ -66,19 +67,19 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
 //   p = 1/(4 A L) sum F_ij (x_i - x_j)
 //
 // Only the components across the tube enter. The sum runs over up to eight elements in the middle of the tube, L is
-// their length, and A is the area of a tube's cell in the cross-section. The pressure of a straight rope at rest is
-// near zero, because the attraction of second neighbours balances the repulsion of the first ones.
+// their length without load, and A is the cell of such a tube in the cross-section. The pressure of a straight rope
+// at rest is near zero, because the attraction of second neighbours balances the repulsion of the first ones.
 class TubePressures {
  public:
-  // All must outlive it. cell: A, nm^2.
-  TubePressures(const Topology& topology, const State& state, const ContactLaw& law, double cell);
+  // All but `cells` must outlive it. cells: A by the type of a tube, nm^2.
+  TubePressures(const Topology& topology, const State& state, const ContactLaw& law, std::vector<double> cells);
   double of(int tube) const;
 
  private:
   const Topology& topology_;
   const State& state_;
   const ContactLaw& law_;
-  double cell_;
+  std::vector<double> cells_;
   CellGrid grid_;
 };
 // The pressure on every tube.

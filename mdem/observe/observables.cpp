@@ -18,21 +18,20 @@ using units::degree;
 
 constexpr double rounding = 1e-4;  // of the potential energies, pairs being in single precision
 
+// Of the rope whose mass counts.
+const Energies& energies(const M& m) {
+  return m.account.period ? m.account.period->potential : m.account.potential;
+}
+const Energies& first_energies(const M& m) { return m.account.period ? m.account.period->first : m.account.first; }
 // MJ/kg, which is 1 eV over 1 eV ps^2/nm^2.
 double stored(const M& m, double Energies::*part) {
-  return (m.account.potential.*part - m.account.first.*part) / m.mass;
+  return (energies(m).*part - first_energies(m).*part) / m.size.mass;
 }
-double stored(const M& m) { return (m.account.potential.potential() - m.account.first.potential()) / m.mass; }
+double stored(const M& m) { return (energies(m).potential() - first_energies(m).potential()) / m.size.mass; }
 
 // eV/nm, mean of both ends.
 double end_tension(const M& m) {
   return 0.5 * (m.account.ends[upper_end].force.z() - m.account.ends[lower_end].force.z());
-}
-// eV ps^2/nm^3; none without elements.
-double mass_per_length(const M& m) {
-  const int elements = m.topology.elements();
-  return elements > 0 ? m.mass * m.topology.strands() / (elements * m.topology.longest_element())
-                      : std::numeric_limits<double>::quiet_NaN();
 }
 double torque(const M& m, End end, Eigen::Index axis) { return m.account.ends[end].torque[axis] / units::nN_nm; }
 
@@ -105,7 +104,8 @@ std::vector<Observable>& table() {
        "total energy - work + dissipated energy - heat, less its first value: the error of integration",
        Group::energy, [](const M& m) { return energy_balance(m.account); }, real, "energy balance"},
 
-      {"stored_MJ_per_kg", "MJ/kg", "potential energy since the start over the mass of the tubes", Group::energy,
+      {"stored_MJ_per_kg", "MJ/kg",
+       "potential energy since the start over the mass of the tubes; of a slice: of one period", Group::energy,
        [](const M& m) { return stored(m); }, real, "stored energy"},
       {"stored_stretch_MJ_per_kg", "MJ/kg", "the share of stretch and shear", Group::energy,
        [](const M& m) { return stored(m, &Energies::stretch) + stored(m, &Energies::shear); }, real,
@@ -118,8 +118,8 @@ std::vector<Observable>& table() {
        [](const M& m) { return stored(m, &Energies::vdw); }, real, "energy stored by contacts"},
       {"cohesion_lost", "", "part of the van der Waals energy of the start that is lost", Group::energy,
        [](const M& m) {
-         const double first = m.account.first.vdw;
-         return first < 0 ? (m.account.potential.vdw - first) / -first : 0.0;
+         const double first = first_energies(m).vdw;
+         return first < 0 ? (energies(m).vdw - first) / -first : 0.0;
        }},
 
       {"ends_apart_nm", "nm", "distance between the centres of both ends; of a periodic slice: its period",
@@ -197,9 +197,9 @@ std::vector<Observable>& table() {
       {"stress_GPa", "GPa",
        "tension, the mean of both ends, over the cross-section of the rope: for each tube a cell of the hexagonal "
        "packing",
-       Group::load, [](const M& m) { return end_tension(m) / m.loading.area / units::nN_nm; }},
-      {"specific_stress_N_per_tex", "N/tex", "the same tension over the mass per length", Group::load,
-       [](const M& m) { return end_tension(m) / mass_per_length(m); }},
+       Group::load, [](const M& m) { return end_tension(m) / m.size.area / units::nN_nm; }},
+      {"specific_stress_N_per_tex", "N/tex", "the same tension over the mass per length of the rope without load",
+       Group::load, [](const M& m) { return end_tension(m) / m.size.mass_per_length; }},
   };
   // Kinds register before main() begins, in no certain order with those who ask for the table there.
   static std::size_t terms = 0;

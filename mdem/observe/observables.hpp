@@ -4,12 +4,14 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "observe/loading.hpp"
 #include "observe/observe.hpp"
+#include "observe/rope_size.hpp"
 #include "sim/forces/force_term.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
@@ -21,12 +23,16 @@ struct EnergyAccount {
   double time_step = 0;  // ps
   double moment = 0;     // eV, prescribed at the ends
   Energies potential;
-  double kinetic = 0;                        // eV
-  double work = 0;                           // eV, done by the loads since the start
-  double dissipated = 0;                     // eV, taken out by damping since the start
-  double heat = 0;                           // eV, brought in by the thermostat since the start
-  double first_energy = 0;                   // eV, total at the start
-  Energies first;                            // potential at the start
+  double kinetic = 0;       // eV
+  double work = 0;          // eV, done by the loads since the start
+  double dissipated = 0;    // eV, taken out by damping since the start
+  double heat = 0;          // eV, brought in by the thermostat since the start
+  double first_energy = 0;  // eV, total at the start
+  Energies first;           // potential at the start
+  struct Period {
+    Energies potential, first;
+  };
+  std::optional<Period> period;              // the same of one period of a slice, which RopeSize::mass counts
   std::map<std::string, TermReading> terms;  // of the force terms by their names
   EndReadings ends;                          // means since the row before
 };
@@ -45,7 +51,7 @@ struct Measurement {
   const State& state;
   const RopeObservation& rope;
   const Loading& loading;
-  double mass;  // eV ps^2/nm^2, of all tubes
+  const RopeSize& size;
   const EnergyAccount& account;
 };
 

@@ -39,6 +39,7 @@ Simulation simulation_with(const Model& model, const std::vector<std::shared_ptr
 SteppedScene::SteppedScene(std::shared_ptr<const Model> model, std::vector<std::shared_ptr<OwnForce>> own)
     : model_(std::move(model)), own_(std::move(own)), simulation_(simulation_with(*model_, own_)) {
   first_ = simulation_.forces().energy;
+  first_of_period_ = energies_of_period(simulation_);
   energies_ = first_;
   first_energy_ = simulation_.total_energy();
 }
@@ -145,6 +146,7 @@ const std::vector<double>& SteppedScene::measure() {
   EnergyAccount account = account_of(s, first_, first_energy_);
   account.potential = energies();  // the last step may have left them out
   account.ends = simulation_.read_gauges();
+  if (first_of_period_) account.period = EnergyAccount::Period{*energies_of_period(s), *first_of_period_};
   measured_ = model_->measure(s.state(), account);
   return *measured_;
 }

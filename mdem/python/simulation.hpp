@@ -71,7 +71,8 @@ class SteppedScene {
   // Values of the present state, where they are known.
   std::optional<Energies> energies_;
   std::optional<std::vector<double>> measured_;
-  Energies first_;           // potential at the start
+  Energies first_;  // potential at the start
+  std::optional<Energies> first_of_period_;
   double first_energy_ = 0;  // eV, total at the start
 };
 

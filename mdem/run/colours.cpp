@@ -10,31 +10,6 @@
 namespace ropewalk {
 namespace {
 
-void colour_contacts(const Topology& topology, const Interaction& in, const State& s, ElementColours& c) {
-  NeighbourList list(in, 0);
-  list.build(topology, s);
-  const PairEnergy law = make_contact_engine(*in.law)->pair_energy(*in.law);
-  const auto energy = [&](int i, int j) {
-    const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-    return law({topology.tube_type[topology.tube_of(i)], topology.tube_type[topology.tube_of(j)]},
-               s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
-  };
-  std::vector<std::size_t> first_pair{0};
-  for (int i = 0; i < topology.elements(); ++i) first_pair.push_back(first_pair.back() + list.pairs(i));
-  std::vector<double> of_pair(list.pairs());
-  for_each_uneven(topology.elements(), 64, s.size() > parallel_from, [&](int i) {
-    double* next = of_pair.data() + first_pair[static_cast<std::size_t>(i)];
-    list.for_neighbours(i, [&](int j) { *next++ = energy(i, j); });
-  });
-  const double* next = of_pair.data();
-  for (int i = 0; i < topology.elements(); ++i)
-    list.for_neighbours(i, [&](int j) {
-      const double half = 0.5 * *next++;
-      c.vdw_energy[static_cast<std::size_t>(i)] += half;
-      c.vdw_energy[static_cast<std::size_t>(j)] += half;
-    });
-}
-
 // Means over the bonds of an element: an inner element has two, an end element one.
 void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
   for (int t = 0; t < topology.tubes(); ++t) {
@@ -60,12 +35,40 @@ void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
 
 }  // namespace
 
+std::vector<double> contact_energies(const Topology& topology, const Interaction& in, const State& s) {
+  std::vector<double> out(s.size(), 0.0);
+  if (!in.has_contact()) return out;
+  NeighbourList list(in, 0);
+  list.build(topology, s);
+  const PairEnergy law = make_contact_engine(*in.law)->pair_energy(*in.law);
+  const auto energy = [&](int i, int j) {
+    const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
+    return law({topology.tube_type[topology.tube_of(i)], topology.tube_type[topology.tube_of(j)]},
+               s.position[sj] - s.position[si], axis_of(s.orientation[si]), axis_of(s.orientation[sj]));
+  };
+  std::vector<std::size_t> first_pair{0};
+  for (int i = 0; i < topology.elements(); ++i) first_pair.push_back(first_pair.back() + list.pairs(i));
+  std::vector<double> of_pair(list.pairs());
+  for_each_uneven(topology.elements(), 64, s.size() > parallel_from, [&](int i) {
+    double* next = of_pair.data() + first_pair[static_cast<std::size_t>(i)];
+    list.for_neighbours(i, [&](int j) { *next++ = energy(i, j); });
+  });
+  const double* next = of_pair.data();
+  for (int i = 0; i < topology.elements(); ++i)
+    list.for_neighbours(i, [&](int j) {
+      const double half = 0.5 * *next++;
+      out[static_cast<std::size_t>(i)] += half;
+      out[static_cast<std::size_t>(j)] += half;
+    });
+  return out;
+}
+
 ElementColours element_colours(const Topology& topology, const Interaction& in, const State& s,
                                const Topology& bonded) {
   ElementColours c;
-  for (auto* v : {&c.bond_energy, &c.vdw_energy, &c.bending_moment, &c.twist_angle}) v->assign(s.size(), 0.0);
+  for (auto* v : {&c.bond_energy, &c.bending_moment, &c.twist_angle}) v->assign(s.size(), 0.0);
   colour_bonds(bonded, s, c);
-  if (in.has_contact()) colour_contacts(topology, in, s, c);
+  c.vdw_energy = contact_energies(topology, in, s);
   return c;
 }
 

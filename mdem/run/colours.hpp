@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "io/frames/colours.hpp"
 #include "sim/state/interaction.hpp"
 
@@ -12,5 +14,8 @@ ElementColours element_colours(const Topology& topology, const Interaction& inte
 inline ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state) {
   return element_colours(topology, interaction, state, topology);
 }
+
+// eV, of each element: half of the energy of each of its contacts.
+std::vector<double> contact_energies(const Topology& topology, const Interaction& interaction, const State& state);
 
 }  // namespace ropewalk

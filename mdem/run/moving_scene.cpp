@@ -3,9 +3,36 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "run/colours.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
+
+std::optional<Energies> energies_of_period(const Simulation& simulation) {
+  const Topology& topology = simulation.topology();
+  if (topology.images == 0) return std::nullopt;
+  const State& s = simulation.state();
+  const Topology now = simulation.tubes_now();
+  const std::vector<double> contacts = contact_energies(topology, simulation.interaction(), s);
+  Energies out;
+  int own = 0;
+  for (int t = 0; t < now.tubes(); ++t) {
+    const TubeType& type = now.type_of(t);
+    for (int e = now.tube_begin[t]; e < now.tube_begin[t + 1]; ++e) {
+      if (topology.is_image(e)) continue;
+      const auto i = static_cast<std::size_t>(e), j = i + 1;
+      ++own;
+      out.vdw += contacts[i];
+      if (e + 1 == now.tube_begin[t + 1]) continue;
+      const BondEnergy bond =
+          bond_energy(type.bond, type.element_length, Vector3(s.position[j] - s.position[i]),
+                      frame_of(s.orientation[i]), frame_of(s.orientation[j]));
+      out.stretch += bond.stretch, out.shear += bond.shear, out.bend += bond.bend, out.twist += bond.twist;
+    }
+  }
+  out.terms = simulation.forces().energy.terms * own / topology.elements();
+  return out;
+}
 
 EnergyAccount account_of(const Simulation& simulation, const Energies& first, double first_energy) {
   const State& s = simulation.state();
@@ -42,6 +69,7 @@ MovingScene::MovingScene(Scene of)
       observer(make_observer(scene, prepared)),
       simulation(start(scene, prepared)),
       first(simulation.forces().energy),
+      first_of_period(energies_of_period(simulation)),
       first_energy(simulation.total_energy()) {}
 
 EnergyParts MovingScene::energies() const {
@@ -51,6 +79,7 @@ EnergyParts MovingScene::energies() const {
 LogRow MovingScene::row() {
   EnergyAccount now = account();
   now.ends = simulation.read_gauges();
+  if (first_of_period) now.period = EnergyAccount::Period{*energies_of_period(simulation), *first_of_period};
   return log_row(observer, scene, simulation.tubes_now(), simulation.state(), now);
 }
 

@@ -1,13 +1,20 @@
 // A scene in motion, and the account of its energy since the start.
 #pragma once
 
+#include <optional>
+
 #include "io/limits_file.hpp"
 #include "run/run_directory.hpp"
 #include "run/step_control.hpp"
 
 namespace ropewalk {
 
-// Without the forces at the ends. `first`, `first_energy` (eV): potential and total energy at the start.
+// Of one period of a slice: bonds that begin with an element of its own, half of each contact that such an element
+// has, and of the force terms as large a share as its elements are of all. None: no slice.
+std::optional<Energies> energies_of_period(const Simulation& simulation);
+
+// Without the forces at the ends and without the period of a slice, which costs as much as some steps. `first`,
+// `first_energy` (eV): potential and total energy at the start.
 EnergyAccount account_of(const Simulation& simulation, const Energies& first, double first_energy);
 
 // Throws InputError for a [[stop]] rule whose column has no value in the first row: it would never fire.
@@ -29,6 +36,7 @@ struct MovingScene {
   Simulation simulation;
   StepControl control;
   Energies first;
+  std::optional<Energies> first_of_period;
   double first_energy = 0;
 };
 

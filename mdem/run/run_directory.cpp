@@ -209,14 +209,10 @@ Observer make_observer(const Scene& scene, const Prepared& prepared) {
                                                           : 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing;
   // Inner tubes are those of the packing, whatever radius is typed for Q.
   o.shells = rope_shells(prepared.topology, prepared.state, 0.5 * (1.0 + std::sqrt(3.0)) * prepared.spacing);
-  for (int t = 0; t < prepared.topology.tubes(); ++t)
-    o.mass += prepared.topology.length_of(t) * prepared.topology.type_of(t).mass / scene.run.mass_scale;
-  // A slice goes on at both ends: as much of it as it has bonds.
-  if (scene.has_ends(Drive::Ends::endless))
-    o.mass *= prepared.topology.bonds() / static_cast<double>(prepared.topology.elements());
   o.loading =
       loading_reference(prepared.topology, prepared.state, o.shells, ends_of(prepared.loads, prepared.topology),
                         o.spacing, o.neighbour_radius, prepared.interaction.law);
+  o.size = rope_size(prepared.topology, o.loading.cells, scene.run.mass_scale);
   return o;
 }
 
@@ -236,7 +232,7 @@ Watched watched_by_run(const Scene& scene, const Prepared& prepared, const Obser
 LogRow log_row(const Observer& o, const Scene& scene, const Topology& topology, const State& state,
                const EnergyAccount& account) {
   return LogRow(
-      {topology, state, observe(o, scene, topology, state), loading(topology, state, o.loading), o.mass, account});
+      {topology, state, observe(o, scene, topology, state), loading(topology, state, o.loading), o.size, account});
 }
 
 }  // namespace ropewalk

@@ -80,7 +80,7 @@ struct Observer {
   RopeShells shells;
   double neighbour_radius = 0;
   double spacing = 0;
-  double mass = 0;  // eV ps^2/nm^2, of all tubes, not scaled
+  RopeSize size;
   LoadingReference loading;
 };
 Observer make_observer(const Scene& scene, const Prepared& prepared);

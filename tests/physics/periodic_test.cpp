@@ -11,7 +11,7 @@
 
 #include "model/error.hpp"
 #include "observe/loading.hpp"
-#include "run/run_directory.hpp"
+#include "run/moving_scene.hpp"
 #include "scene/finer.hpp"
 #include "scene/random.hpp"
 #include "scene/scene_to_model.hpp"
@@ -436,6 +436,42 @@ TEST(PeriodicSlice, ImagesFollowATwistThatGrows) {
     EXPECT_LT((Vector3(placed.position[i]) - Vector3(s.state().position[i])).norm(), 1e-10);
     EXPECT_LT(placed.orientation[i].angularDistance(s.state().orientation[i]), 1e-9);
   }
+}
+
+// Stretched tubes against Hooke's law: neither the images nor the ends of the slice count, however many there are.
+TEST(PeriodicSlice, EnergyPerMassIsThatOfOnePeriod) {
+  const double strain = 0.004;
+  const auto row_with = [&](int images, const std::string& more) {
+    Slice slice(
+        slice_text(7, 12 + 2 * images,
+                   fmt::format("[bond]\nlaw = \"harmonic\"\n[periodic]\ntwist_deg_per_nm = [[0, 0]]\nimages = "
+                               "{}\n[run]\nduration_ps = 1\n{}",
+                               images, more)));
+    EXPECT_EQ(slice.own, 12);
+    const Observer observer = make_observer(slice.scene, slice.p);
+    const Simulation first = start(slice.scene, slice.p);
+    State stretched = slice.p.state;
+    for (double& z : stretched.position.z) z *= 1 + strain;
+    const Simulation s(slice.p.topology, slice.p.interaction, {}, stretched, slice.p.time_step);
+    EnergyAccount account = account_of(slice.scene, s, first.forces().energy, 0);
+    account.period = EnergyAccount::Period{*energies_of_period(s), *energies_of_period(first)};
+    account.ends[upper_end].force.z() = 3, account.ends[lower_end].force.z() = -3;
+    return log_row(observer, slice.scene, slice.p.topology, stretched, account);
+  };
+  const LogRow few = row_with(4, ""), many = row_with(9, ""), heavy = row_with(4, "mass_scale = 4\n");
+  const ParameterSet set =
+      Slice(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nduration_ps = 1\n"))
+          .scene.parameters();
+  const double mass_per_length = set.atoms_per_length * units::carbon_mass;
+  for (const LogRow& row : {few, many, heavy}) {
+    EXPECT_NEAR(row["stored_stretch_MJ_per_kg"], 0.5 * set.bond.stretch * strain * strain / mass_per_length,
+                1e-9 * row["stored_stretch_MJ_per_kg"]);
+    EXPECT_NEAR(row["specific_stress_N_per_tex"], 3 / (7 * mass_per_length), 1e-12);
+    EXPECT_NEAR(row["stored_contact_MJ_per_kg"], few["stored_contact_MJ_per_kg"],
+                1e-9 * few["stored_contact_MJ_per_kg"]);
+    EXPECT_NEAR(row["cohesion_lost"], few["cohesion_lost"], 1e-9 * few["cohesion_lost"]);
+  }
+  EXPECT_GT(few["stored_contact_MJ_per_kg"], 1e-6);
 }
 
 // GJ tau of a single tube.

@@ -750,7 +750,7 @@ TEST(ObservedNoRope, TubesThatRunAgainstEachOtherHaveNoCentreLine) {
     EXPECT_EQ(std::isnan(seen.length), turned);
     EXPECT_EQ(std::isnan(loading(rope.topology, rope.state, from).slip), turned);
     const Loading now = loading(rope.topology, rope.state, from);
-    const LogRow row({rope.topology, rope.state, seen, now, 1, EnergyAccount{}});
+    const LogRow row({rope.topology, rope.state, seen, now, RopeSize{}, EnergyAccount{}});
     for (const char* none : {"Q", "Q_delaunay", "contacts", "voids", "void_area_nm2", "beta_deg", "slip_nm"})
       EXPECT_EQ(std::isnan(row[none]), turned) << none;
   }

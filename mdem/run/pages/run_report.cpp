@@ -112,7 +112,7 @@ ReportLoading loading_of(const Topology& topology, const Topology& now, const St
   ReportLoading out;
   out.time_ps = state.time;
   out.radius = reference.radius;
-  if (reference.law && reference.cell > 0)
+  if (reference.knows_pressures())
     for (const double pressure : tube_pressures(topology, state, reference))
       out.pressure_GPa.push_back(pressure / units::nN_nm);  // nN/nm^2
   for (int t = 0; t < topology.tubes(); ++t) {

@@ -57,6 +57,13 @@ int Topology::image_below(int element) const {
   return at.is_own() && at.place >= at.own ? element - at.own : -1;
 }
 
+int Topology::own_elements(int tube) const {
+  if (images == 0) return length_of(tube);
+  const int strand = elements() / strands(), first = tube_begin[tube] / strand * strand;
+  return std::max(
+      0, std::min(tube_begin[tube + 1], first + strand - images) - std::max(tube_begin[tube], first + images));
+}
+
 std::pair<int, int> Topology::strands_of_rope(int rope) const {
   ROPEWALK_EXPECTS(rope >= 0 && rope < ropes());
   if (rope_begin.empty()) return {0, strands()};

@@ -169,6 +169,8 @@ struct Topology {
   int image_above(int element) const;
   int image_below(int element) const;
   bool is_image(int element) const { return original_of(element) != element; }
+  // The number of those in a tube that are no images.
+  int own_elements(int tube) const;
   bool owns(int element) const {
     ROPEWALK_EXPECTS(element >= 0 && element < elements());
     return !part || part->own[static_cast<std::size_t>(element)] != 0;

@@ -64,7 +64,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   l.curvature = 0.125;
   l.slip = 0.75;
   l.core_pressure = 2 * units::nN_nm;
-  l.area = 2;
+  const RopeSize size{2, 0.25 * units::nN_nm, 2};
   RopeObservation o;
   o.beta = 0.5;
   o.physical_twist = 1.25;
@@ -90,12 +90,12 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
   o.overstretched = 6;
   o.largest_bond_twist = 0.75;
   EXPECT_EQ(
-      log_line(LogRow({topology, state, o, l, 2, a})),
+      log_line(LogRow({topology, state, o, l, size, a})),
       "123456789012345,0.1,25,30,8,32,4,2,16,8,4,4,360,7,1,1,2,3,4,-1e-300,0.25,8,0.5,0.5,0.125,0.25,5.5,1,1,1.5,"
       "2,1,66,"
       "-0.0625,-1,2,0.125,0.75,2,28.64788975654116,71.6197243913529,-143.2394487827058,-7.16197243913529,-1,2,210,"
       "3,"
-      "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,2.5,0.375,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,nan,0,0,0,0,0,"
+      "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,2.5,0.375,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,16,0,0,0,0,0,"
       "0,0,0,0,0,"
       "0,0,0,0\n");
 }

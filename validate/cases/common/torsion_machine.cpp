@@ -134,7 +134,7 @@ RopeInMachine::Reading RopeInMachine::wound(double twist, Length kept, bool spin
   out.stretch = apart(topology, s.state()) / length;
   out.energy = (e.potential() - straight_energy_) / tubes;
   out.stretch_share = (e.stretch + e.shear) / e.bonds();
-  out.core_pressure = TubePressures(topology, s.state(), *interaction.law, cell()).of(0);
+  out.core_pressure = TubePressures(topology, s.state(), *interaction.law, {cell()}).of(0);
   return out;
 }
 

@@ -1,0 +1,26 @@
+// How much rope there is: what stress, specific stress, energies per mass and pressures refer to.
+#pragma once
+
+#include <vector>
+
+#include "sim/contact/contact_law.hpp"
+#include "sim/state/state.hpp"
+
+namespace ropewalk {
+
+// Of a rope without load, along its tubes: strain and twist change none of it, and holes between tubes in line are
+// no part of it. Of a slice, one period.
+struct RopeSize {
+  double mass = 0;             // eV ps^2/nm^2
+  double mass_per_length = 0;  // eV ps^2/nm^3, of all strands, where tubes are: NaN without tubes
+  double area = 0;             // nm^2, of the cross-section: the cells of its strands; NaN without a spacing
+};
+
+// nm^2, by the type of a tube: its cell in a hexagonal packing of tubes like it. `spacing` (nm) is that of tubes of
+// one type. `law`: null without contact.
+std::vector<double> packing_cells(const Topology& topology, double spacing, const ContactLaw* law);
+
+// `cells`: packing_cells(). `mass_scale`: times which the masses of the topology are those of the tubes.
+RopeSize rope_size(const Topology& topology, const std::vector<double>& cells, double mass_scale);
+
+}  // namespace ropewalk
