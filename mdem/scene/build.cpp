@@ -194,6 +194,15 @@ void check_state(const Scene& scene, const BuiltScene& built) {
                        "take it away, or the last six columns of the file");
 }
 
+// As of so many elements of each strand as the contact reaches.
+void set_period_inertia(double reach, Topology& topology) {
+  const Topology strands = strands_of(topology);
+  for (int s = 0; topology.images > 0 && s < strands.tubes(); ++s) {
+    const TubeType& type = strands.type_of(s);
+    topology.period_inertia += std::max(1, type.elements_within(reach)) * type.mass;
+  }
+}
+
 }  // namespace
 
 BuiltScene build(Scene& scene) {
@@ -218,6 +227,7 @@ BuiltScene build(Scene& scene) {
                      fmt::format("holds {} elements, {}", out.topology.elements(), memory),
                      "take fewer elements, or another machine");
   set_tube_types(scene, out.topology);
+  set_period_inertia(interaction_of(scene, out.law).cutoff(), out.topology);
   draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);

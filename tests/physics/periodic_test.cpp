@@ -397,6 +397,127 @@ TEST(PeriodicSlice, StrainFollowsTensionAndTensionStrain) {
   EXPECT_NEAR(length(), pulled + 0.004 * period, 3e-4);
 }
 
+// A slice of seven shaken tubes whose length is free under a tension.
+struct Free {
+  Slice slice;
+  double tension = 5 * units::nN_nm;
+
+  Free(int images, const std::string& more)
+      : slice(slice_text(7, 12 + 2 * images,
+                         fmt::format("[periodic]\ntwist_deg_per_nm = [[0, 1]]\nimages = {}\ntension_nN = [[0, 5]]\n"
+                                     "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n{}",
+                                     images, more))) {
+    EXPECT_EQ(slice.own, 12);
+  }
+  double rate(const State& s) const {
+    return s.velocity.z[static_cast<std::size_t>(slice.own)] - s.velocity.z[0];  // element 0 is its image
+  }
+  // eV, of a period, less the work of the tension.
+  double potential(const State& s) const {
+    const Simulation still(slice.p.topology, slice.p.interaction, {}, s, slice.p.time_step);
+    return energies_of_period(still)->potential() - tension * slice_length(slice.p.topology, s);
+  }
+  double kinetic(const State& s) const {
+    double sum = 0.5 * slice.p.topology.period_inertia * std::pow(rate(s), 2);
+    for (int e = 0; e < slice.p.topology.elements(); ++e) {
+      const TubeType& type = slice.p.topology.type_of_element(e);
+      const auto i = static_cast<std::size_t>(e);
+      if (!slice.is_image(e))
+        sum += 0.5 * (type.mass * s.velocity[i].squaredNorm() + type.inertia * s.angular_velocity[i].squaredNorm());
+    }
+    return sum;
+  }
+};
+
+// However many images there are.
+TEST(PeriodicSlice, TheForceOnItsLengthIsTheGradientOfTheEnergy) {
+  for (const int images : {3, 9, 12}) {
+    Free free(images, "[run]\nduration_ps = 1\ntime_step_fs = 0.1\n");
+    Slice& slice = free.slice;
+    shake(slice, slice.p.state, 0.01, 0);
+    const double h = 1e-5;
+    const auto lengthened = [&](double by) {
+      State s = slice.p.state;
+      for (int e = 0; e < slice.p.topology.elements(); ++e) {
+        const int k = e % slice.strand();
+        if (slice.is_image(e)) s.position.z[static_cast<std::size_t>(e)] += k < images ? -by : by;
+      }
+      return free.potential(s);
+    };
+    const double force = -(lengthened(h) - lengthened(-h)) / (2 * h);
+    ASSERT_GT(std::fabs(force), 1);
+    Simulation s = start(slice.scene, slice.p);
+    s.steps(1, true);
+    EXPECT_NEAR(free.rate(s.state()) / slice.p.time_step * slice.p.topology.period_inertia, force,
+                1e-3 * std::fabs(force));
+  }
+}
+
+TEST(PeriodicSlice, KeepsTheEnergyOfAFreeLength) {
+  Free free(9, "[run]\nduration_ps = 1\ntime_step_fs = 2\n");
+  shake(free.slice, free.slice.p.state, 0.002, 0.02);
+  Simulation s = start(free.slice.scene, free.slice.p);
+  const auto total = [&] { return free.kinetic(s.state()) + free.potential(s.state()); };
+  s.steps(1, true);
+  const double first = total(), kinetic = free.kinetic(s.state());
+  double apart = 0;
+  for (int k = 0; k < 20; ++k) {
+    s.steps(100, true);
+    apart = std::max(apart, std::fabs(total() - first));
+  }
+  EXPECT_LT(apart, 0.01 * kinetic);
+}
+
+// A bath gives a free length kT as well, apart from the elements.
+TEST(PeriodicSlice, ABathHoldsItsLength) {
+  const double kT = units::boltzmann * 300;
+  for (const int images : {3, 9}) {
+    const Free free(images, "[run]\nduration_ps = 1\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n");
+    State s = free.slice.p.state;
+    const std::shared_ptr<const Thermostat> bath = free.slice.p.stepping.thermostat;
+    const auto below = static_cast<std::size_t>(free.slice.own), above = static_cast<std::size_t>(images);
+    double square = 0, both = 0;
+    constexpr int draws = 4000;
+    for (int k = 0; k < draws; ++k, ++s.step) {
+      bath->apply(free.slice.p.topology, 100, s);
+      square += std::pow(free.rate(s), 2) / draws;
+      both += free.rate(s) * (s.velocity.z[above] - s.velocity.z[below]) / draws;
+    }
+    const double expected = kT / free.slice.p.topology.period_inertia,
+                 of_one = kT / free.slice.p.topology.types[0].mass;
+    EXPECT_NEAR(square, expected, 0.1 * expected);
+    EXPECT_NEAR(both, 0, 4 * std::sqrt(2 * expected * of_one / draws));
+  }
+}
+
+// Elements of a shortened slice lie nearer to each other, and more of them are within reach.
+TEST(PeriodicSlice, HasTheImagesThatItsLeastLengthNeeds) {
+  const auto text = [](int elements, const std::string& more) {
+    return slice_text(7, elements,
+                      "[periodic]\ntwist_deg_per_nm = [[0, 0]]\nstrain = [[0, 0], [8, -0.4]]\n" + more);
+  };
+  const Slice free(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nduration_ps = 1\n"));
+  const Slice slice(text(20, ""));
+  EXPECT_GT(slice.images, free.images);
+  State shortened = slice.p.state;
+  for (double& z : shortened.position.z) z *= 0.6;
+  EXPECT_NO_THROW(slice.load->constrain(slice.p.topology, 8, 0, shortened));
+  const auto said = [](const std::string& of) {
+    try {
+      const Slice refused(of);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said(text(20, fmt::format("images = {}\n", free.images))), HasSubstr("at its least strain, -0.4"));
+  EXPECT_THAT(said(text(10, "")), HasSubstr("make the tubes at least"));
+  EXPECT_THAT(said(slice_text(7, 20,
+                              "[periodic]\ntwist_deg_per_nm = [[0, 0]]\ntension_nN = [[0, -6000]]\n[run]\n"
+                              "duration_ps = 1\n")),
+              HasSubstr("at its least strain, -0.5"));
+}
+
 TEST(PeriodicSlice, RefusesTubesThatMeetTheirImages) {
   try {
     const Slice slice(yarn_text("", ""));

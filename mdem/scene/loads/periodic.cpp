@@ -38,6 +38,21 @@ void check_slice(const TomlTable& t, const Scene&, PeriodicLoad& load) {
                 "begin with 0: it counts from the length at that time on");
 }
 
+constexpr double slack = 0.5;  // of an element, at whose distance the contact is weak
+
+// Images that a slice needs at each end, for a contact that reaches so many elements far: shortened, it has more of
+// them within reach.
+int images_within(double reach, double least_strain) {
+  const double shortened = (reach - 0.9 * slack) / (1 + std::min(least_strain, 0.0));
+  return std::max(1, static_cast<int>(std::ceil(std::max(reach, shortened))));
+}
+
+double least_of(const std::vector<Schedule::Point>& points) {
+  double least = 0;
+  for (const Schedule::Point& p : points) least = std::min(least, p.value);
+  return least;
+}
+
 Eigen::Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitZ()).toRotationMatrix(); }
 
 Quaternion turn_by(const Vector3& angle) {
@@ -60,7 +75,8 @@ const KeyTable<PeriodicLoad>& periodic_table() {
       {Key::integer(
            "images", 1, 1000, &PeriodicLoad::images,
            otherwise("4",
-                     "as many as the contact reaches; where tubes end inside, 5 nm and a tenth of a tube more"),
+                     "as many as the contact reaches, also at the least strain; where tubes end inside, 5 nm and a "
+                     "tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
@@ -184,20 +200,31 @@ double PeriodicLoad::lasts() const {
 }
 
 int PeriodicDrive::images(double reach) const {
-  return load.images > 0 ? load.images : std::max(1, static_cast<int>(std::ceil(reach)));
+  return load.images > 0 ? load.images : images_within(reach, least_of(load.strain));
 }
 
 PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, const std::string& path) const {
   PeriodicLoad out = *this;
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;
-  const int needed = std::max(1, static_cast<int>(std::ceil(reach / a)));
+  double stiffness = 0;  // eV/nm, of all strands
+  for (int s = 0; s < topology.strands(); ++s)
+    stiffness +=
+        topology.type_of(topology.strand_begin.empty() ? s : topology.strand_begin[static_cast<std::size_t>(s)])
+            .bond.stretch;
+  const double strain_of_pressure = least_of(tension) / stiffness,
+               least = std::min(least_of(strain), strain_of_pressure);
   out.images = topology.images;
   ROPEWALK_EXPECTS(out.images > 0 && topology.elements() % topology.strands() == 0);
-  if (out.images < needed)
-    throw InputError({path, 0, "periodic.images"},
-                     fmt::format("is {}, and the contact reaches {:.3g} nm", out.images, reach),
-                     fmt::format("take at least {}{}", needed, images > 0 ? ", or leave the key away" : ""));
+  if (const int needed = images_within(reach / a, least); out.images < needed)
+    throw InputError(
+        {path, 0, "periodic.images"},
+        fmt::format("is {}, and the contact reaches {:.3g} nm{}", out.images, reach,
+                    needed > images_within(reach / a, 0)
+                        ? fmt::format(", {} elements of a slice at its least strain, {:.3g}", needed, least)
+                        : ""),
+        fmt::format("take at least {}{}", needed,
+                    images > 0 && least == least_of(strain) ? ", or leave the key away" : ""));
   const int all = topology.elements() / topology.strands();
   out.period_ = topology.period;
   out.reach_ = reach;
@@ -231,12 +258,12 @@ PeriodicLoad::Length PeriodicLoad::measured(const Topology& topology, const Stat
 }
 
 // A length that no tension has moved is that of its schedule to the last digit.
-PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift,
-                                                const State& s) const {
+PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift, const State& s,
+                                                double more) const {
   const double then = time + drift, rate = period_ * stretched_.rate(time);
   if (tension.empty()) return {period_ * (1 + stretched_.value(then)), rate};
   const Length now = measured(topology, s);
-  if (is_free(time)) return {now.now + drift * now.rate, now.rate};
+  if (is_free(time)) return {now.now + drift * (now.rate + more), now.rate + more};
   return {now.now + period_ * (stretched_.value(then) - stretched_.value(time)), rate};
 }
 
@@ -248,11 +275,10 @@ void PeriodicLoad::add_forces(const State&, double time, std::vector<PointLoad>&
       out.push_back({e, Vector3(0, 0, end == upper_end ? each : -each), Vector3::Zero()});
 }
 
-// Strands slide along one another. Their images must reach as far as the contact all the same, but for half an
-// element, at whose distance it is weak.
+// Strands slide along one another. Their images must reach as far as the contact all the same, but for the slack.
 void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
   const int all = topology.elements() / topology.strands();
-  const double half = 0.5 * topology.type_of(0).element_length, far = std::numeric_limits<double>::max();
+  const double half = slack * topology.type_of(0).element_length, far = std::numeric_limits<double>::max();
   double lowest_own = far, highest_own = -far, images_from = -far, images_to = far;
   int first = 0;
   for (int e = 0; e < topology.elements(); e += all) {
@@ -302,12 +328,29 @@ void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
     for (const int image : ends_[end]) act(image, topology.original_of(image), end == upper_end ? 1.0 : -1.0);
 }
 
+void PeriodicLoad::lead(const Topology& topology, double time, double drift, const Length& length, State& s) const {
+  for_images(topology,
+             [&](int image, int original, double sign) { follow(image, original, sign, time, drift, length, s); });
+}
+
 void PeriodicLoad::constrain(const Topology& topology, double time, double ahead, State& s) const {
   check_reach(topology, s);
-  const Length length = length_after(topology, time, 2 * ahead, s);
+  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s), s);
+}
+
+// The kick has moved images and originals by the forces on each, and the measured L' with them.
+void PeriodicLoad::constrain_after(const Forces& total, double dt, const Topology& topology, double time,
+                                   double ahead, State& s) const {
+  check_reach(topology, s);
+  double pull = 0, moved = 0, mass = 0;
   for_images(topology, [&](int image, int original, double sign) {
-    follow(image, original, sign, time, 2 * ahead, length, s);
+    const double on_image = total.force.z[static_cast<std::size_t>(image)];
+    pull += 0.5 * sign * on_image;
+    moved += sign * (on_image - total.force.z[static_cast<std::size_t>(original)]);
+    mass += topology.type_of_element(image).mass;
   });
+  const double more = dt * (pull / topology.period_inertia - moved / mass);
+  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s, more), s);
 }
 
 void PeriodicLoad::wind(State& s) const {

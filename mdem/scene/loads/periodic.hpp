@@ -10,12 +10,15 @@
 // the elements between them are those of the endless rope, as long as the images reach as far as the contact. What
 // moves the images gives the gauges: torque and tension of the rope.
 //
-// L is L0 (1 + strain), or follows a tension F until the first time of the strain: with the masses m of the images,
-// s = 1 for the upper ones and -1 for the lower ones, and the forces f on images and g on their originals,
+// L is L0 (1 + strain), or follows a tension F until the first time of the strain. With the energy U of one period,
 //
-//   L'' = sum s (f_z - g_z + s F/n) / sum m,   n the number of images at one end,
+//   W L'' = F - dU/dL,   dU/dL = - sum s f_z/2,
 //
-// that is, as a rope whose ends have the mass of the images. L and L' are kept in the images themselves.
+// f the forces on the images, s = 1 for the upper ones and -1 for the lower ones: what holds the images to the
+// slice's own elements is the derivative of U by L, since forces among the images of one end cancel. The inertia W
+// is the mass of as many elements at one end as the contact reaches (Topology::period_inertia). So L, the slice's
+// own elements and a thermostat sample the canonical ensemble of an endless rope under F, however many images there
+// are. L and L' are kept in the images themselves.
 #pragma once
 
 #include <vector>
@@ -47,6 +50,8 @@ class PeriodicLoad : public Load {
   Order order() const override { return Order::prescribed_motion; }
   std::vector<int> reads(const Topology& topology) const override;  // the originals
   void constrain(const Topology&, double time, double ahead, State&) const override;
+  void constrain_after(const Forces& total, double dt, const Topology&, double time, double ahead,
+                       State&) const override;
   void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
   std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }
   std::optional<LoadEffect> effect() const override;
@@ -69,10 +74,11 @@ class PeriodicLoad : public Load {
     double now = 0, rate = 0;
   };
   Length measured(const Topology&, const State&) const;
-  // L at the end of a drift from `time` on, and L' at `time`.
-  Length length_after(const Topology&, double time, double drift, const State&) const;
+  // L at the end of a drift from `time` on, and L' at `time`, which a free length has more than measured.
+  Length length_after(const Topology&, double time, double drift, const State&, double more = 0) const;
   bool is_free(double time) const { return !tension.empty() && (strain.empty() || time < strain.front().time); }
   void check_reach(const Topology&, const State&) const;
+  void lead(const Topology&, double time, double drift, const Length& then, State&) const;
   void follow(int image, int original, double sign, double time, double drift, const Length& then, State&) const;
 
   Schedule schedule_;            // of tau, smoothed

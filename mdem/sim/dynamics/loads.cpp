@@ -70,7 +70,7 @@ void constrain(const Topology& topology, const LoadsAndConstraints& loads, const
     const auto i = static_cast<std::size_t>(e);
     out.push_back({e, state.velocity[i], state.angular_velocity[i], 0});
   }
-  constrain(topology, loads, time, ahead, state);
+  for (const auto& load : loads) load->constrain_after(total, kick, topology, time, ahead, state);
   for (ConstraintImpulse& c : out) {
     const auto i = static_cast<std::size_t>(c.element);
     const TubeType& type = topology.type_of_element(c.element);

@@ -82,6 +82,11 @@ class Load {
   virtual void add_forces(const State&, double /*time*/, std::vector<PointLoad>&) const {}
   // Sets the constrained velocity components. `ahead` (ps) is half of the drift with these velocities.
   virtual void constrain(const Topology&, double /*time*/, double /*ahead*/, State&) const {}
+  // The same after a kick of `dt` (ps) by the forces `total`, for a load with a motion of its own under them.
+  virtual void constrain_after(const Forces& /*total*/, double /*dt*/, const Topology& topology, double time,
+                               double ahead, State& state) const {
+    constrain(topology, time, ahead, state);
+  }
 
   // Appends the elements at the ends of the rope where it says which ones they are.
   virtual void add_ends(EndElements&) const {}

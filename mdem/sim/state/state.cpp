@@ -84,6 +84,7 @@ Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   cut.strand_holes = topology.strand_holes;
   cut.images = topology.images;
   cut.period = topology.period;
+  cut.period_inertia = topology.period_inertia;
   cut.rope_begin = topology.rope_begin;
   cut.strand_begin = {0};
   for (int t = 0; t < topology.tubes(); ++t) {
@@ -105,6 +106,7 @@ Topology strands_of(const Topology& topology) {
   strands.strand_holes = topology.strand_holes;
   strands.images = topology.images;
   strands.period = topology.period;
+  strands.period_inertia = topology.period_inertia;
   strands.rope_begin = topology.rope_begin;
   for (int s = 0; s < topology.strands(); ++s) {
     const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),
