@@ -1,8 +1,10 @@
 #include "scene/prepare.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -11,11 +13,13 @@
 #include "observe/centre_line.hpp"
 #include "scene/refuse_state.hpp"
 #include "scene/state_files.hpp"
+#include "scene/term_damping.hpp"
 #include "sim/dynamics/blow_up.hpp"
 
 namespace ropewalk {
 namespace {
 
+constexpr double least_held = 0.9;  // of the temperature of a bath, beside what damps
 constexpr double max_steps = 1e12;  // years, even of a single tube
 
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
@@ -111,23 +115,45 @@ void refuse_first_step(const Scene& scene, const Simulation& s) {
   }
 }
 
-// PFC's local damping takes a part of the heat in every swing of every mode.
-double start_heat_left(const Scene& scene, const Prepared& p, double time) {
-  return scene.damping.local > 0 ? 0.0 : heat_left(p.limit, time);
-}
+// All that takes heat out of a warm scene and gives none back.
+struct Cooling {
+  const Scene& scene;
+  const Prepared& p;
+  std::vector<TermDamping> terms;
+  double of_terms = 0;  // 1/ps
 
-// ps, of the heat under damping; infinite without.
-double half_life(const Scene& scene, const Prepared& p) {
-  if (scene.damping.local > 0) return 0;
-  if (p.limit.damping_rate <= 0) return std::numeric_limits<double>::infinity();
-  double below = 0, above = 1 / p.limit.damping_rate;
-  while (heat_left(p.limit, above) > 0.5 && above < 1e9) above *= 2;
-  for (int k = 0; k < 40; ++k) {
-    const double middle = 0.5 * (below + above);
-    (heat_left(p.limit, middle) > 0.5 ? below : above) = middle;
+  Cooling(const Scene& of, const Prepared& prepared) : scene(of), p(prepared) {
+    const ThermostatOptions* bath = scene.bath();
+    terms = damping_of_terms(p.topology, p.interaction, p.state,
+                             bath ? bath->temperature.largest() : scene.start.temperature);
+    for (const TermDamping& t : terms) of_terms += t.rate;
   }
-  return above;
-}
+  double held(double coupling) const { return bath_held(p.limit, coupling, of_terms); }
+  // PFC's local damping takes a part of the heat in every swing of every mode.
+  double left(double time) const { return scene.damping.local > 0 ? 0.0 : heat_left(p.limit, time, of_terms); }
+  // ps, of the heat; infinite without damping.
+  double half_life() const {
+    if (scene.damping.local > 0) return 0;
+    if (p.limit.damping_rate + of_terms <= 0) return std::numeric_limits<double>::infinity();
+    double below = 0, above = 1 / (p.limit.damping_rate + of_terms);
+    while (left(above) > 0.5 && above < 1e9) above *= 2;
+    for (int k = 0; k < 40; ++k) {
+      const double middle = 0.5 * (below + above);
+      (left(middle) > 0.5 ? below : above) = middle;
+    }
+    return above;
+  }
+  // "set ... to 0"
+  std::string remedy() const {
+    std::vector<std::string> out;
+    if (p.limit.damping_rate > 0)
+      out.emplace_back("set contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0");
+    for (const TermDamping& t : terms)
+      out.push_back(t.name == "friction" ? "set drag_eV_ps_per_nm3 of [[friction]] to 0: the bath rubs as well"
+                                         : fmt::format("take what brakes out of the force term \"{}\"", t.name));
+    return fmt::format("{}", fmt::join(out, ", "));
+  }
+};
 
 }  // namespace
 
@@ -145,24 +171,34 @@ bool is_warm(const Scene& scene) {
 void refuse_cooling(const Scene& scene, const Prepared& p) {
   if (!is_warm(scene)) return;
   if (const ThermostatOptions* bath = scene.bath()) {
-    const double held = bath_held(p.limit, bath->coupling);
-    if (held < 0.5 && !scene.start.may_cool)
-      throw InputError({scene.path, 0, "thermostat.temperature_K"},
-                       fmt::format("is {} K, and damping leaves the tubes at about {:.2g} % of that: it takes the "
-                                   "heat faster than coupling_per_ps = {:.4g} brings it",
-                                   words_of(bath->temperature), 100 * held, bath->coupling),
-                       "set contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0, or write "
-                       "may_cool = true into [start]");
+    for (const auto& term : p.interaction.terms)
+      if (term->acts_in_kick() && !scene.start.may_cool)
+        throw InputError(
+            {scene.path, 0, "thermostat"},
+            fmt::format("does not go with the force term \"{}\": it acts in the kick, on the velocities "
+                        "that the bath gives",
+                        term->name()),
+            "take one of the two away");
+    const Cooling cooling(scene, p);
+    const double held = cooling.held(bath->coupling);
+    if (held < least_held && !scene.start.may_cool)
+      throw InputError(
+          {scene.path, 0, "thermostat.temperature_K"},
+          fmt::format("is {} K, and damping leaves the tubes at about {:.2g} % of that: it takes heat that "
+                      "coupling_per_ps = {:.4g} does not replace",
+                      words_of(bath->temperature), 100 * held, bath->coupling),
+          cooling.remedy() + "; or write may_cool = true into [start]");
     return;
   }
-  const double left = start_heat_left(scene, p, p.duration);
+  const Cooling cooling(scene, p);
+  const double left = cooling.left(p.duration);
   if (left > 0.5) return;
   throw InputError(
       {scene.path, 0, "start.temperature_K"},
       fmt::format(
           "is {:.4g} K, and damping leaves {:.2g} % of that heat at the end of the run, {:.4g} ps (half of it "
           "after {:.2g} ps)",
-          scene.start.temperature, 100 * left, p.duration, half_life(scene, p)),
+          scene.start.temperature, 100 * left, p.duration, cooling.half_life()),
       "hold it with [thermostat], set the keys of [damping] to 0, or write may_cool = true into [start] if it is a "
       "first push alone");
 }
@@ -174,19 +210,26 @@ std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
         fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
                     "than velocities.",
                     100 * excess_of_positions(p.limit, p.time_step)));
-  if (const ThermostatOptions* bath = scene.bath(); bath && is_warm(scene))
-    if (const double held = bath_held(p.limit, bath->coupling); held < 0.99)
+  const ThermostatOptions* bath = scene.bath();
+  if (bath ? !is_warm(scene) : scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0)
+    return out;
+  const Cooling cooling(scene, p);
+  if (bath) {
+    if (const double held = cooling.held(bath->coupling); held < 0.99) {
+      std::string remedy = cooling.remedy();
+      remedy.front() = static_cast<char>(std::toupper(remedy.front()));
       out.push_back(
-          fmt::format("Damping takes out heat beside the thermostat: the tubes stay at about {:.2g} % of {} K. Set "
-                      "contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0 to hold it.",
-                      100 * held, words_of(bath->temperature)));
-  if (scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0 || scene.bath()) return out;
+          fmt::format("Damping takes out heat beside the thermostat: the tubes stay at about {:.2g} % of {} K. {}.",
+                      100 * held, words_of(bath->temperature), remedy));
+    }
+    return out;
+  }
   std::string text =
       fmt::format("The {:.4g} K at the start are in the velocities alone; bonds at rest take half of that heat.",
                   scene.start.temperature);
-  if (const double half = half_life(scene, p); std::isfinite(half))
+  if (const double half = cooling.half_life(); std::isfinite(half))
     text += fmt::format(" Damping takes half of it in {:.2g} ps and leaves {:.2g} % after {:.4g} ps.", half,
-                        100 * start_heat_left(scene, p, p.duration), p.duration);
+                        100 * cooling.left(p.duration), p.duration);
   out.push_back(text);
   return out;
 }

@@ -2,15 +2,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "model/error.hpp"
 #include "scene/loads/thermostat.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/term_damping.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
 namespace UNIT {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 0.5\n";
@@ -73,6 +78,59 @@ TEST(ThermostatTable, RefusesWhatDoesNotGoWithIt) {
   expect(run + "temperature_K = [[0, 1], [9, -2]]\ncoupling_per_ps = 1\n", "has the value -2 in point 2");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 0\n", "thermostat.coupling_per_ps");
   expect(run + "temperature_K = 300\ncoupling_per_ps = 1\nmethod = \"berendsen\"\n", "thermostat.method");
+}
+
+std::string cooling(const std::string& body) {
+  Scene scene = scene_from("[run]\nduration_ps = 1\n" + body);
+  try {
+    refuse_cooling(scene, prepare(scene));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Whatever takes heat and gives none back: one rule for damping, friction and the terms of a user.
+TEST(ThermostatTable, RefusesLossesWithoutNoise) {
+  const std::string undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n" + bath,
+                    friction = "[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\n";
+  EXPECT_EQ(cooling(undamped), "");
+  EXPECT_EQ(cooling(undamped + friction), "");
+  EXPECT_EQ(cooling(undamped + friction + "drag_eV_ps_per_nm3 = 0.01\n"), "") << "0.6 K of 250";
+  const std::string drag = friction + "drag_eV_ps_per_nm3 = 3\n";
+  EXPECT_THAT(cooling(undamped + drag),
+              AllOf(HasSubstr("thermostat.temperature_K: is 250 K, and damping leaves the tubes at about "),
+                    HasSubstr("set drag_eV_ps_per_nm3 of [[friction]] to 0")));
+  EXPECT_EQ(cooling(undamped + drag + "[start]\nmay_cool = true\n"), "");
+  EXPECT_THAT(cooling(bath), HasSubstr("bond_damping_per_ps of [damping] to 0"));
+}
+
+class Brake : public ForceTerm {
+ public:
+  std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<Brake>(*this); }
+  std::string name() const override { return "brake"; }
+  TermSum add(const State& state, const Segment& part, const ForceRows& out) const override {
+    for (int i = part.begin; i < part.end; ++i)
+      out.force.add(static_cast<std::size_t>(i - out.origin), -20.0 * state.velocity[static_cast<std::size_t>(i)]);
+    return {};  // says nothing of its power
+  }
+};
+
+TEST(ThermostatTable, RefusesTheTermsOfAUserThatBrake) {
+  Scene scene = scene_from(
+      "[run]\nduration_ps = 1\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n" + bath);
+  Prepared p = prepare(scene);
+  EXPECT_NO_THROW(refuse_cooling(scene, p));
+  add_term(std::make_shared<Brake>(), p.interaction);
+  // Half of all motions decay at 20 over the mass.
+  EXPECT_NEAR(damping_of_terms(p.topology, p.interaction, p.state, 250).at(0).rate, 10 / p.topology.types[0].mass,
+              1.5 / p.topology.types[0].mass);
+  try {
+    refuse_cooling(scene, p);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("take what brakes out of the force term \"brake\""));
+  }
 }
 
 }  // namespace UNIT

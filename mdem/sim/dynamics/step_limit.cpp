@@ -240,16 +240,16 @@ double step_of_excess(const TimeStepLimit& limit, double excess) {
   return below;
 }
 
-double heat_left(const TimeStepLimit& limit, double time) {
+double heat_left(const TimeStepLimit& limit, double time, double of_terms) {
   ROPEWALK_EXPECTS(!limit.damping_rates.empty());
   double sum = 0;
-  for (const double rate : limit.damping_rates) sum += std::exp(-rate * time);
+  for (const double rate : limit.damping_rates) sum += std::exp(-(rate + of_terms) * time);
   return sum / static_cast<double>(limit.damping_rates.size());
 }
 
-double bath_held(const TimeStepLimit& limit, double coupling) {
+double bath_held(const TimeStepLimit& limit, double coupling, double of_terms) {
   double sum = 0;
-  for (const double rate : limit.damping_rates) sum += coupling / (coupling + rate);
+  for (const double rate : limit.damping_rates) sum += coupling / (coupling + rate + of_terms);
   return sum / static_cast<double>(limit.damping_rates.size());
 }
 

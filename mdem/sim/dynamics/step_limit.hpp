@@ -40,10 +40,11 @@ double excess_of_positions(const TimeStepLimit& limit, double step);
 double step_of_excess(const TimeStepLimit& limit, double excess);
 
 // Part of the kinetic energy of an even distribution over all waves that damping has not taken after `time` (ps):
-// mean of exp(-c t) over the rates c of damping. An estimate, since it leaves out what damping makes of the modes.
-double heat_left(const TimeStepLimit& limit, double time);
+// mean of exp(-c t) over the rates c of damping, to each of which force terms add `of_terms` (1/ps). An estimate,
+// since it leaves out what damping makes of the modes.
+double heat_left(const TimeStepLimit& limit, double time, double of_terms = 0);
 // Temperature over that of a Langevin bath whose friction is `coupling` (1/ps), under the same damping: a mode
 // feels the noise of the bath and both frictions, so mean of coupling/(coupling + c). An estimate likewise.
-double bath_held(const TimeStepLimit& limit, double coupling);
+double bath_held(const TimeStepLimit& limit, double coupling, double of_terms = 0);
 
 }  // namespace ropewalk
