@@ -375,7 +375,7 @@ void add_rest(CLI::App& app, Verbs& v) {
   c->add_option("scene", v.rest.scene, "Scene (TOML): a [rope] with [twist]")->required();
   c->add_option("--out", v.rest.out, "Directory of both runs; the same command goes on [default: runs/NAME-rest]");
   c->add_option("--viscosity", v.rest.viscosity,
-                "Contact viscosity (eV ps/nm^2) [default: the scene's, or a tenth of the default]")
+                "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
       ->check(CLI::NonNegativeNumber);
   c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides agree")
       ->capture_default_str()

@@ -18,8 +18,7 @@ length_nm = {length}
 [contact]
 {contact}
 [damping]
-contact_viscosity_eV_ps_per_nm2 = {viscosity}
-bond_damping_per_ps = {bond}
+contact_viscosity_eV_ps_per_nm3 = 26.494399169187087
 [start]
 seed = {seed}
 [[grip]]
@@ -32,19 +31,19 @@ duration_ps = {all:g}
 log_every_ps = {every:g}
 {run}
 """
-DEFAULT = dict(top="", length=67.8, rope="", contact="", viscosity=20, bond=1, seed=1, turn=200, run="")
+DEFAULT = dict(top="", length=67.8, rope="", contact="", seed=1, turn=200, run="")
 
 
-def elements(length, rope, viscosity, bond):
-    """Elements of another length; free length and damping of a length of tube stay."""
-    return dict(top=f"element_length_nm = {length}", length=rope, viscosity=viscosity, bond=bond)
+def elements(length, rope):
+    """Elements of another length; the free length stays."""
+    return dict(top=f"element_length_nm = {length}", length=rope)
 
 
 ROWS = {
     "default": {},
-    "elements of 2.76 nm": elements(2.75518, 67.8, 80, 0.25),
-    "elements of 0.69 nm": elements(0.68879, 66.81, 5, 4),
-    "elements of 0.34 nm": elements(0.344397, 66.47, 1.25, 16),
+    "elements of 2.76 nm": elements(2.75518, 67.8),
+    "elements of 0.69 nm": elements(0.68879, 66.81),
+    "elements of 0.34 nm": elements(0.344397, 66.47),
     "3 nodes": dict(contact="nodes_per_element = 3"),
     "8 nodes": dict(contact="nodes_per_element = 8"),
     "cutoff 2.2 nm": dict(contact="cutoff_nm = 2.2"),

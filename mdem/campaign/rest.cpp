@@ -29,7 +29,7 @@ std::string rest_sweep(const Scene& scene, const Prepared& p, const RestTheory& 
   std::string text =
       fmt::format("format = \"ropewalk-sweep-1\"\nscene = {}\n[vary]\nstart.twist_deg_per_nm = [{:.4g}, {:.4g}]\n",
                   nlohmann::json(scene.path).dump(), below * most / above / units::degree, most / units::degree);
-  if (viscosity >= 0) text += fmt::format("damping.contact_viscosity_eV_ps_per_nm2 = [{:.4g}]\n", viscosity);
+  if (viscosity >= 0) text += fmt::format("damping.contact_viscosity_eV_ps_per_nm3 = [{:.4g}]\n", viscosity);
   return text;
 }
 

@@ -12,7 +12,7 @@
 namespace ropewalk {
 
 // The two scenes as a sweep of [start] twist_deg_per_nm: a quarter of the winding of the compact state and half as
-// much again as it, at most 20 degrees at the rim. `viscosity` (eV ps/nm^2), where it is not negative, is the
+// much again as it, at most 20 degrees at the rim. `viscosity` (eV ps/nm^3), where it is not negative, is the
 // contact viscosity of both: any value leads to a state of rest, and a lower one sooner until the rope swings.
 std::string rest_sweep(const Scene& scene, const Prepared& prepared, const RestTheory& theory, double viscosity);
 

@@ -18,7 +18,7 @@
 //   [branch]                     # points that differ only below here share one run up to this time
 //   at_ps = 135
 //   [branch.vary]
-//   damping.contact_viscosity_eV_ps_per_nm2 = [8, 20]
+//   damping.contact_viscosity_eV_ps_per_nm3 = [11, 27]
 #pragma once
 
 #include <optional>

@@ -95,7 +95,7 @@ int view_command(const ViewArguments& arguments);
 struct RestArguments {
   std::string scene;
   std::string out;                  // empty: runs/NAME-rest
-  std::optional<double> viscosity;  // eV ps/nm^2
+  std::optional<double> viscosity;  // eV ps/nm^3
   double tolerance = 0.02;          // of the geometric twist, within which both sides agree
   int jobs = 0;                     // 0: one for each core
   bool force = false;

@@ -24,8 +24,8 @@ constexpr double of_the_default = 0.1;
 
 double viscosity_of(const RestArguments& a, const Scene& scene) {
   if (a.viscosity) return *a.viscosity;
-  const double standard = default_contact_viscosity(scene.element_length, scene.parameters().radius);
-  return scene.damping.contact.eta == standard ? of_the_default * standard : -1;
+  const double standard = contact_viscosity(default_viscosity, scene.element_length, scene.parameters().radius);
+  return scene.damping.contact.eta == standard ? of_the_default * default_viscosity : -1;
 }
 
 void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory, double length) {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "plan/scene_edit.hpp"
-#include "scene/dissipation.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
@@ -78,22 +77,12 @@ void PlannedScene::lengthen(double times, const std::string& why) {
   const std::int64_t parts = std::max<std::int64_t>(2, std::llround(free / wanted));
   const double length = free / static_cast<double>(parts);
   set("", "element_length_nm", fmt::format("{:.10g}", length), why);
-  keep_dissipation(length);
   const std::int64_t now = parts + held;
   const SceneKey size = tube_size_key(scene_);
   set(size.table, size.key,
       size.tube_size == SceneKey::TubeSize::elements ? std::to_string(now)
                                                      : fmt::format("{:.10g}", static_cast<double>(now) * length),
       held ? "the ends' centres stay as far apart" : "the tubes stay as long");
-}
-
-void PlannedScene::keep_dissipation(double length) {
-  const Damping &now = scene_.damping, kept = same_dissipation(now, scene_.element_length, length);
-  const auto write = [&](const char* key, double value) {
-    set("damping", key, fmt::format("{:.6g}", value), "as much per length of tube as before");
-  };
-  if (now.contact.eta > 0 && features_.contact) write("contact_viscosity_eV_ps_per_nm2", kept.contact.eta);
-  if (now.bond.rate > 0) write("bond_damping_per_ps", kept.bond.rate);
 }
 
 void PlannedScene::finish() {

@@ -36,7 +36,6 @@ class PlannedScene {
 
  private:
   double longest() const;  // nm, of the tubes
-  void keep_dissipation(double length);
 
   const Scene& scene_;
   const SceneFeatures& features_;

@@ -1,5 +1,6 @@
 // Notes on a scene before and after a run: grades, warnings, error bars.
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "observe/bending.hpp"
 #include "observe/centre_line.hpp"
 #include "run/run_directory.hpp"
+#include "scene/dissipation.hpp"
 #include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/paper/law.hpp"
@@ -46,6 +48,24 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
       "at {:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
       100 * off, set.name, w.crossed_shallowest, w.crossed_deepest, integral.cross90_energy, w.parallel, w.spacing,
       integral.pair_energy, integral.pair_spacing));
+}
+
+// A key of earlier scenes, which belongs to a pair of elements.
+void warn_of_viscosity_per_pair(const Scene& scene, std::vector<std::string>& warnings) {
+  const toml::table top = toml::parse(scene.text);
+  const double typed = top["damping"]["contact_viscosity_eV_ps_per_nm2"].value_or(0.0);
+  if (!(typed > 0)) return;
+  const ParameterSet& set = scene.parameters();
+  const double per_length =
+      default_viscosity * typed / contact_viscosity(default_viscosity, set.element_length, set.radius);
+  warnings.push_back(fmt::format(
+      "damping.contact_viscosity_eV_ps_per_nm2 = {:.6g} stands for pairs of elements of {:.4g} nm, the set's own "
+      "length{}. damping.contact_viscosity_eV_ps_per_nm3 = {:.6g} says the same per length of contact.",
+      typed, set.element_length,
+      scene.element_length == set.element_length
+          ? ""
+          : fmt::format(", and is {:.4g} for those of {:.4g} nm", scene.damping.contact.eta, scene.element_length),
+      per_length));
 }
 
 // A shorter cutoff makes another, weaker law.
@@ -153,6 +173,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
     warnings.push_back(
         fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
                     scene.run.mass_scale));
+  warn_of_viscosity_per_pair(scene, warnings);
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
   if (scene.contact.law == "line" && scene.contact.nodes > 0) {

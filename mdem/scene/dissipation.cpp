@@ -17,10 +17,12 @@ double viscosity_per_length(const ContactViscosity& viscosity, double element_le
 
 }  // namespace
 
-double default_contact_viscosity(double a, double radius) {
+double contact_viscosity(double per_length, double a, double radius) {
   constexpr double eta = 20, published_length = 1.356, published_radius = 0.678;  // eV ps/nm^2, nm
   const double longer = a / published_length;
-  return eta * longer * longer * (2 * published_radius + graphite_gap) / (2 * radius + graphite_gap);
+  const double by_default =
+      eta * longer * longer * (2 * published_radius + graphite_gap) / (2 * radius + graphite_gap);
+  return per_length == default_viscosity ? by_default : per_length * by_default / default_viscosity;
 }
 
 Damping same_dissipation(Damping d, double from, double to) {

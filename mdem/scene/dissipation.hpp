@@ -13,9 +13,13 @@
 
 namespace ropewalk {
 
-// The viscosity (eV ps/nm^2) of a pair of elements of a scene that gives none: 20 for the published set. Others get
-// the same per length of contact, eta/a^2 times the distance of the axes of two tubes, 2 r and the gap of graphite.
-double default_contact_viscosity(double element_length, double radius);
+// The viscosity (eV ps/nm^2) of a pair of elements that gives two tubes `per_length` (eV ps/nm^3): the force per
+// length of contact and speed of sliding. It goes as a^2 over the distance of the axes, 2 r and the gap of
+// graphite.
+double contact_viscosity(double per_length, double element_length, double radius);
+// eV ps/nm^3, of a scene that gives none, and by definition that of the published set with 20 eV ps/nm^2 for a pair
+// of elements.
+inline constexpr double default_viscosity = 27;
 
 // Lengths in nm. The reach of the viscosity must be set where there is one.
 Damping same_dissipation(Damping damping, double from, double to);

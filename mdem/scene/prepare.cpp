@@ -147,7 +147,7 @@ struct Cooling {
   std::string remedy() const {
     std::vector<std::string> out;
     if (p.limit.damping_rate > 0)
-      out.emplace_back("set contact_viscosity_eV_ps_per_nm2 and bond_damping_per_ps of [damping] to 0");
+      out.emplace_back("set contact_viscosity_eV_ps_per_nm3 and bond_damping_per_ps of [damping] to 0");
     for (const TermDamping& t : terms)
       out.push_back(t.name == "friction" ? "set drag_eV_ps_per_nm3 of [[friction]] to 0: the bath rubs as well"
                                          : fmt::format("take what brakes out of the force term \"{}\"", t.name));

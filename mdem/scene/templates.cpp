@@ -33,7 +33,7 @@ const char* dissipation_of(const std::vector<Block>& blocks) {
   };
   if (sets("friction", "from", "\"atoms\""))
     return "The way counts here: tubes rub on each other as atoms do, and contact viscosity is off.";
-  if (sets("damping", "contact_viscosity_eV_ps_per_nm2", "0") || sets("contact", "law", "\"none\"") ||
+  if (sets("damping", "contact_viscosity_eV_ps_per_nm3", "0") || sets("contact", "law", "\"none\"") ||
       sets("run", "mode", "\"relax\""))
     return "";
   return "Numerical damping brings it to rest, which atoms do not have: trust where it rests, not the way there.";
@@ -73,7 +73,7 @@ std::vector<Recipe> recipes() {
        {{"", calibrated()},
         rope_of("37", "67.8"),
         grip("lower"),
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0"}}},
         {"friction", {{"from", "\"atoms\""}}},
         grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [200, 150], [250, 150], [450, 0], [500, 0]] }"}})}},
       {"pull-out",
@@ -81,14 +81,14 @@ std::vector<Recipe> recipes() {
        {{"", calibrated()},
         rope_of("7", "40.7"),
         grip("lower", {{"tubes", "[1, 2, 3, 4, 5, 6]"}}),
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0.1325"}}},
         grip("upper", {{"tubes", "[0]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
       {"pull-out-outer",
        "7 tubes of 40.7 nm: an outer tube is drawn along the rope by 10 nm",
        {{"", calibrated()},
         rope_of("7", "40.7"),
         grip("lower", {{"tubes", "[0, 2, 3, 4, 5, 6]"}}),
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0.1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0.1325"}}},
         grip("upper", {{"tubes", "[1]"}, {"z", "{ displacement_nm = 10, rate_nm_per_ps = 0.02 }"}})}},
       {"load-transfer",
        "19 tubes of 67.8 nm: the seven inner ones are pulled, the twelve outer ones are held below",
@@ -101,7 +101,7 @@ std::vector<Recipe> recipes() {
        "19 strands of 100 nm, of tubes of 40 nm that end inside of the rope and are linked: pulled until it parts",
        {{"", calibrated()},
         {"rope", {{"tubes", "19"}, {"length_nm", "100"}, {"tube_length_nm", "40"}}},
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "1"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "1.325"}}},
         grip("lower"),
         grip("upper", {{"z", "{ strain = 0.04, rate_per_ps = 0.0002 }"}}),
         {"links", {{"per_nm", "0.1"}, {"stiffness_nN_per_nm", "100"}, {"breaks_at_nN", "5"}}}}},
@@ -142,7 +142,7 @@ std::vector<Recipe> recipes() {
        {{"", calibrated()},
         {"rope",
          {{"tubes", "19"}, {"length_nm", "148"}, {"tube_length_nm", "40"}, {"tube_length_deviation_nm", "10"}}},
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "2"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "2.65"}}},
         {"periodic",
          {{"twist_deg_per_nm", "[[0, 0], [100, 2]]"},
           {"tension_nN", "[[0, 0]]"},
@@ -165,7 +165,7 @@ std::vector<Recipe> recipes() {
         {"contact", {{"law", "\"none\""}}},
         {"start", {{"temperature_K", "300"}}},
         {"thermostat", {{"temperature_K", "300"}, {"coupling_per_ps", "0.05"}}},
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "5000"}}}}},
       {"spindle",
        "91 tubes of 67.8 nm twisted into a spindle (Wang et al. 2015, Fig. 2); real tubes collapse under this "
@@ -189,7 +189,7 @@ std::vector<Recipe> recipes() {
        "7 short tubes at 10 K without damping: does energy stay?",
        {{"rope", {{"tubes", "7"}, {"length_nm", "6.78"}}},
         {"start", {{"temperature_K", "10"}}},
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "1000"}}}}},
       {"film",
        "a thin film of 100 tubes of 68.9 nm, laid down at random, at 300 K; where tubes fall on one another they "
@@ -198,7 +198,7 @@ std::vector<Recipe> recipes() {
         {"film", {{"tubes", "100"}, {"length_nm", "68.9"}, {"width_nm", "150"}, {"depth_nm", "100"}}},
         {"start", {{"temperature_K", "300"}}},
         {"thermostat", {{"temperature_K", "300"}, {"coupling_per_ps", "1"}}},
-        {"damping", {{"contact_viscosity_eV_ps_per_nm2", "0"}, {"bond_damping_per_ps", "0"}}},
+        {"damping", {{"contact_viscosity_eV_ps_per_nm3", "0"}, {"bond_damping_per_ps", "0"}}},
         {"run", {{"duration_ps", "50"}}}}},
       {"chain",
        "a cantilever: one tube, one end fixed, a force on the other",

@@ -742,10 +742,11 @@ TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
 }
 
 TEST(Rope, PerturbationIsLateralBoundedAndOfTheSeed) {
-  const auto built = [](int seed, const char* amplitude) {
-    return built_from(fmt::format("[rope]\ntubes = 7\nlength_nm = 67.8\nperturbation_nm = {}\n[start]\nseed = {}\n",
-                                  amplitude, seed) +
-                      run);
+  const auto built = [](int seed, const char* amplitude, const char* top = "") {
+    return built_from(
+        fmt::format("{}[rope]\ntubes = 7\nlength_nm = 67.8\nperturbation_nm = {}\n[start]\nseed = {}\n", top,
+                    amplitude, seed) +
+        run);
   };
   const State straight = built(1, "0").state, a = built(1, "0.01").state, b = built(1, "0.01").state,
               c = built(2, "0.01").state;
@@ -760,6 +761,13 @@ TEST(Rope, PerturbationIsLateralBoundedAndOfTheSeed) {
   EXPECT_NEAR(sum2, 0.01 * 0.01 / 3, 0.1 * 0.01 * 0.01 / 3);
   EXPECT_EQ(a.position.x, b.position.x);
   EXPECT_NE(a.position.x, c.position.x);
+  // Long waves are as large in elements of half the length.
+  const char* const finer = "element_length_nm = 0.678\n[contact]\nlaw = \"none\"\n";
+  const State flat = built(1, "0", finer).state, fine = built(1, "0.01", finer).state;
+  double fine2 = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i)
+    fine2 += (fine.position[i] - flat.position[i]).squaredNorm() / static_cast<double>(2 * fine.size());
+  EXPECT_NEAR(fine2 / sum2, 2, 0.3);
 }
 
 TEST(Chain, IsStraightAlongZ) {

@@ -92,7 +92,7 @@ std::string cooling(const std::string& body) {
 
 // Whatever takes heat and gives none back: one rule for damping, friction and the terms of a user.
 TEST(ThermostatTable, RefusesLossesWithoutNoise) {
-  const std::string undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n" + bath,
+  const std::string undamped = "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n" + bath,
                     friction = "[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\n";
   EXPECT_EQ(cooling(undamped), "");
   EXPECT_EQ(cooling(undamped + friction), "");
@@ -118,7 +118,7 @@ class Brake : public ForceTerm {
 
 TEST(ThermostatTable, RefusesTheTermsOfAUserThatBrake) {
   Scene scene = scene_from(
-      "[run]\nduration_ps = 1\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n" + bath);
+      "[run]\nduration_ps = 1\n[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n" + bath);
   Prepared p = prepare(scene);
   EXPECT_NO_THROW(refuse_cooling(scene, p));
   add_term(std::make_shared<Brake>(), p.interaction);

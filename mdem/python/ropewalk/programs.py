@@ -392,7 +392,7 @@ def rest(
     Arguments:
         scene: a scene, a dict of its keys (units stand in their names), or a file
         out: directory of both runs; the same call goes on after an interruption
-        viscosity: contact viscosity (eV ps/nm^2); None: the scene's, or a tenth of the default
+        viscosity: contact viscosity (eV ps/nm^3); None: the scene's, or a tenth of the default
         tolerance: part of the twist within which both sides agree (no unit)
         jobs: runs at a time; None: one on each core (no unit)
         force: replaces runs of another scene

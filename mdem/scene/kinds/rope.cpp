@@ -111,8 +111,10 @@ SceneKind rope_kind() {
             .is_tube_size(SceneKey::TubeSize::length),
         Key::number("spacing_nm", unit::nm, spacing_bounds, &RopeSource::spacing,
                     otherwise("1.713", "where two tubes bind best"), "distance between tube axes"),
-        Key::number("perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
-                    "each element is displaced at random by up to this in x and y"),
+        Key::number(
+            "perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
+            "each element is displaced at random by up to this in x and y; elements of another length than the "
+            "set's own by more or less, so that long waves stay"),
         Key::number(
             "tube_length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::tube_length,
             otherwise("20", "length_nm"),
@@ -177,7 +179,9 @@ void RopeSource::place(const Scene& scene, double spacing_of_tubes, Random& rand
   else
     add_straight_tubes(places(spacing_of_tubes, scene.start.seed), sizes(scene.element_length).elements,
                        scene.element_length, topology, state);
-  if (perturbation > 0) displace(perturbation, random, state);
+  // The same in all waves that the elements can show, whatever their length.
+  if (perturbation > 0)
+    displace(perturbation * std::sqrt(scene.parameters().element_length / scene.element_length), random, state);
 }
 
 std::string RopeSource::description(const Topology& t, const State&, double spacing_of_tubes) const {

@@ -3,15 +3,22 @@
 //
 //   |x_j - x_i|/a - 1 > strain,   or   bending moment > moment
 //
-// The limit of strain may scatter from bond to bond: a normal number, at least a tenth of the mean, by the seed and
-// the number of the element. The energy of the bond is lost. The parts of the tube are then joined by nothing but
-// contact; as before, elements within the exclusion along the tube do not touch each other. Units nm, ps, eV.
+// The limit of strain may scatter along the tube, by the seed and the number of the element: the weakest place of a
+// length l has the distribution of W. Weibull (J. Appl. Mech. 18, 293 (1951)),
+//
+//   probability that it bears more than e:  exp(-(l/l0) (e/e0)^k)
+//
+// l0 is the length to which the typed mean and standard deviation belong; they give e0 and k. A bond is as strong
+// as its own length of tube, so that a tube is as strong in elements of any length. The energy of the bond is lost.
+// The parts of the tube are then joined by nothing but contact; as before, elements within the exclusion along the
+// tube do not touch each other. Units nm, ps, eV.
 #include "scene/loads/failure.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -28,18 +35,32 @@ namespace ropewalk {
 namespace {
 
 constexpr double never_breaks = std::numeric_limits<double>::infinity();
-constexpr double least_share = 0.1;  // of the mean strain
 constexpr std::uint32_t strain_question = 0xFFFFFFFE;  // a last number of counters that nothing else takes
 
+// k, of a standard deviation of `share` of the mean.
+double weibull_exponent(double share) {
+  double below = 1, above = 1e6;
+  for (int step = 0; step < 200; ++step) {
+    const double k = std::sqrt(below * above), mean = std::tgamma(1 + 1 / k);
+    (std::tgamma(1 + 2 / k) / (mean * mean) - 1 > share * share ? below : above) = k;
+  }
+  return above;
+}
+
 struct FailureLaw {
-  double strain = 0, deviation = 0;
-  double moment = never_breaks;  // eV
+  double strain = 0, deviation = 0, reference = 0;  // reference: nm of tube that both belong to
+  double moment = never_breaks;                     // eV
   std::uint64_t seed = 1;
 
-  double strain_of(int element) const {
-    if (!(deviation > 0)) return strain;
-    const auto bits = philox({static_cast<std::uint32_t>(element), 0, 0, strain_question}, seed);
-    return std::max(least_share * strain, strain + deviation * normal_pair(bits[0], bits[1])[0]);
+  // Of the bond behind each of these elements of `length` nm.
+  std::function<double(int)> strains_of(double length) const {
+    if (!(deviation > 0)) return [mean = strain](int) { return mean; };
+    const double k = weibull_exponent(deviation / strain),
+                 scale = strain / std::tgamma(1 + 1 / k) * std::pow(reference / length, 1 / k);
+    return [k, scale, seed = seed](int element) {
+      const auto bits = philox({static_cast<std::uint32_t>(element), 0, 0, strain_question}, seed);
+      return scale * std::pow(-std::log(unit_interval(bits[0])), 1 / k);
+    };
   }
 };
 
@@ -55,9 +76,11 @@ class TubeFailure : public ForceTerm {
  public:
   TubeFailure(FailureLaw law, const Topology& scene) : law_(law), topology_(scene) {
     limit_.resize(static_cast<std::size_t>(scene.elements()), never_breaks);
-    for (int t = 0; t < scene.tubes(); ++t)
+    for (int t = 0; t < scene.tubes(); ++t) {
+      const auto strain_of = law_.strains_of(scene.type_of(t).element_length);
       for (int i = scene.tube_begin[t]; i + 1 < scene.tube_begin[t + 1]; ++i)
-        limit_[static_cast<std::size_t>(i)] = law.strain_of(scene.original_of(i));
+        limit_[static_cast<std::size_t>(i)] = strain_of(scene.original_of(i));
+    }
     broken_.assign(limit_.size(), 0);
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeFailure>(*this); }
@@ -166,7 +189,7 @@ class FailureDrive : public Drive {
   std::string words() const override {
     return fmt::format(
         "tubes break where they are strained by {:.4g}{}{}", law.strain,
-        law.deviation > 0 ? fmt::format(" ± {:.3g}", law.deviation) : "",
+        law.deviation > 0 ? fmt::format(" ± {:.3g} in {:.4g} nm of tube", law.deviation, law.reference) : "",
         law.moment < never_breaks ? fmt::format(" or bent with {:.4g} nN nm", law.moment / units::nN_nm) : "");
   }
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
@@ -200,7 +223,11 @@ const KeyTable<FailureDrive>& failure_table() {
            "in experiments (DOI 10.1126/science.287.5453.637)"),
        Key::number(
            "strain_deviation", unit::none, Bounds::range(0, 1), [](auto& d) -> auto& { return d.law.deviation; },
-           standard(), "standard deviation of that strain from bond to bond, as defects make it"),
+           standard(), "standard deviation of that strain along the tubes, as defects make it (Weibull)"),
+       Key::number(
+           "reference_length_nm", unit::nm, Bounds::positive(1e9), [](auto& d) -> auto& { return d.law.reference; },
+           otherwise("1.378", "the set's own element length"),
+           "length of tube that the scattered strain and its deviation belong to: longer tubes are weaker"),
        Key::number(
            "moment_nN_nm", unit::nN_nm, Bounds::positive(1e6), [](auto& d) -> auto& { return d.law.moment; },
            otherwise("15", "never"), "bending moment at which a bond breaks too"),
@@ -209,6 +236,7 @@ const KeyTable<FailureDrive>& failure_table() {
            "of the scatter")},
       [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
+        if (!(failure.law.reference > 0)) failure.law.reference = scene.parameters().element_length;
         if (failure.law.deviation > 0.34 * failure.law.strain)
           throw t.error("strain_deviation", "is more than a third of strain: some bonds would break at rest",
                         fmt::format("take at most {:.2g}", failure.law.strain / 3));

@@ -1,18 +1,39 @@
 // [damping] Dissipation belongs to a length of tube. Two rows have four times as many pairs in reach of the contact
-// viscosity per length where elements are half as long, so that eta goes as the square of the element length; the
-// viscosity of a bonded chain goes as the rate times that square, so that the rate goes as its inverse. PFC's local
-// damping has no length.
+// viscosity per length where elements are half as long, so that the viscosity of a pair goes as the square of the
+// element length; the viscosity of a bonded chain goes as the rate times that square, so that the rate goes as its
+// inverse. PFC's local damping has no length.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "scene/dissipation.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
 namespace {
 
+constexpr const char* per_pair =
+    "contact_viscosity_eV_ps_per_nm2";  // an old key, of elements of the set's own length
+constexpr const char* per_length = "contact_viscosity_eV_ps_per_nm3";
+Bounds viscosities() { return Bounds::non_negative(1e6); }
+
 Damping defaults() {
   Damping d;
-  d.contact.eta = -1;  // not typed
+  d.contact.eta = default_viscosity;  // per length, until the table is complete
   d.bond.rate = 1;
   return d;
+}
+
+void complete(const TomlTable& t, const Scene& scene, Damping& d) {
+  const ParameterSet& set = scene.parameters();
+  const double longer = scene.element_length / set.element_length, squared = longer * longer;
+  // Not asked for where it is not there: no misspelt key shall be taken for this one.
+  const bool typed_per_pair = std::binary_search(t.keys().begin(), t.keys().end(), per_pair);
+  if (typed_per_pair && t.has(per_length))
+    throw t.error(per_pair, fmt::format("and {} are both given", per_length), "take this one away");
+  d.contact.eta = typed_per_pair ? squared * t.number(per_pair, viscosities())
+                                 : contact_viscosity(d.contact.eta, scene.element_length, set.radius);
+  d.bond.rate /= squared;
 }
 
 }  // namespace
@@ -25,22 +46,15 @@ const KeyTable<Damping>& damping_table() {
       "contact "
       "viscosity to 0 and take [[friction]] from = \"atoms\"; 0 switches a term off",
       {Key::number(
-           "contact_viscosity_eV_ps_per_nm2", {"eV ps/nm^2", 1}, Bounds::non_negative(1e6),
-           [](auto& d) -> auto& { return d.contact.eta; },
-           otherwise("20",
-                     "27 eV ps/nm^3 per length of contact: 20 for elements of 1.356 nm of the published tube"),
-           "against sliding at contact points")
-           .goes_as_length(2),
+           per_length, {"eV ps/nm^3", 1}, viscosities(), [](auto& d) -> auto& { return d.contact.eta; }, standard(),
+           "against sliding: force per length of contact and speed, between two tubes side by side"),
        Key::number(
            "bond_damping_per_ps", {"1/ps", 1}, Bounds::non_negative(1e4),
-           [](auto& d) -> auto& { return d.bond.rate; }, standard(), "against relative motion of bonded elements")
-           .goes_as_length(-2),
+           [](auto& d) -> auto& { return d.bond.rate; }, standard(),
+           "against relative motion of bonded elements of the set's own length; others are as viscous per length"),
        Key::number("pfc_local", unit::none, Bounds::range(0, 1), &Damping::local, standard(),
                    "PFC3D's local damping, 0 to 1; breaks momentum conservation")},
-      [](const TomlTable&, const Scene& scene, Damping& d) {
-        if (d.contact.eta < 0)
-          d.contact.eta = default_contact_viscosity(scene.element_length, scene.parameters().radius);
-      },
+      complete,
       defaults()};
   return table;
 }

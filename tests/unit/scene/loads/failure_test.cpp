@@ -1,8 +1,10 @@
 // [failure]: scene/loads/failure.cpp.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -205,6 +207,38 @@ TEST(Failure, StoredEventsCutTheTubesAgain) {
     EXPECT_THROW(StoredEvents(file.string(), p.topology), InputError) << line;
   }
   std::filesystem::remove(file);
+}
+
+// Strains at which tubes of one length break first: those of Weibull's law, in elements of any length.
+TEST(Failure, ATubeIsAsStrongInElementsOfAnyLength) {
+  constexpr double own = 1.3775870846515064, mean = 0.04, deviation = 0.004;
+  for (const double length : {0.5 * own, own, 2 * own}) {
+    Scene scene = scene_of_text(
+        fmt::format(
+            "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\nelement_length_nm = {:.17g}\n"
+            "[rope]\ntubes = 400\npacking = \"round\"\nlength_nm = {:.17g}\n[contact]\nlaw = \"none\"\n"
+            "[failure]\nstrain = {}\nstrain_deviation = {}\nreference_length_nm = {:.17g}\n[run]\n"
+            "duration_ps = 1\n",
+            length, 20 * own + length, mean, deviation, 20 * own),
+        "failure.toml");
+    const Prepared p = prepare(scene);
+    const std::unique_ptr<ForceTerm> term = p.interaction.terms.at(0)->copy();
+    std::vector<double> broke(400, 0);
+    State s = p.state;
+    for (double strain = 0.02; std::count(broke.begin(), broke.end(), 0) > 0; strain += 0.0002) {
+      ASSERT_LT(strain, 0.08);
+      for (std::size_t i = 0; i < s.size(); ++i) s.position.z[i] = (1 + strain) * p.state.position.z[i];
+      term->advance(0, s);
+      for (const TermRecord& r : term->memory())
+        if (double& first = broke[static_cast<std::size_t>(p.topology.tube_of(r.element))]; first == 0)
+          first = strain;
+    }
+    double sum = 0, squares = 0;
+    for (const double strain : broke) sum += strain, squares += strain * strain;
+    const double seen = sum / 400, scatter = std::sqrt(squares / 400 - seen * seen);
+    EXPECT_NEAR(seen, mean, 4 * deviation / 20) << length;
+    EXPECT_NEAR(scatter, deviation, 0.15 * deviation) << length;
+  }
 }
 
 TEST(Failure, BadOnesAreRefused) {
