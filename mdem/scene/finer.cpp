@@ -12,7 +12,7 @@
 #include "io/plain_text.hpp"
 #include "scene/bounds.hpp"
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"

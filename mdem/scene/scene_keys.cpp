@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "scene/kinds/scene_kind.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {

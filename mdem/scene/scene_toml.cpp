@@ -8,7 +8,7 @@
 #include "io/toml_table.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 

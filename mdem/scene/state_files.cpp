@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "model/error.hpp"
-#include "scene/loads/failure.hpp"
+#include "scene/interactions/failure.hpp"
 #include "scene/state_csv.hpp"
 
 namespace ropewalk {

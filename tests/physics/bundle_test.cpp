@@ -6,7 +6,7 @@
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/simulation.hpp"

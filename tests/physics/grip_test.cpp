@@ -1,12 +1,12 @@
 // Clamps of a testing machine: schedules, rigid discs, free components, and readings of the gauges at both ends.
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "unit/support.hpp"

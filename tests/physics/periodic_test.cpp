@@ -1,6 +1,6 @@
 // A periodic slice: its forces are those of an endless rope, it keeps energy and momentum, and its torque is that
 // of the middle of a long rope.
-#include "scene/loads/periodic.hpp"
+#include "scene/ends/periodic.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

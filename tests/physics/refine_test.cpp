@@ -5,7 +5,7 @@
 
 #include "observe/limits.hpp"
 #include "scene/finer.hpp"
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {

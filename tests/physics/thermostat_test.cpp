@@ -10,7 +10,7 @@
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "sim/contact/line/law.hpp"
 #include "model/counter_random.hpp"
 #include "sim/dynamics/langevin.hpp"

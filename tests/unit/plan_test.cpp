@@ -19,7 +19,7 @@
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/kinds/rope.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/wound.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "model/error.hpp"
-#include "scene/loads/thermostat.hpp"
+#include "scene/bath/thermostat.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/term_damping.hpp"

@@ -15,7 +15,7 @@
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 
 namespace ropewalk::validate {
 namespace {

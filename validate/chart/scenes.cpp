@@ -17,7 +17,7 @@
 #include "scene/dissipation.hpp"
 #include "scene/kinds/film.hpp"
 #include "scene/lattice.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk::validate {

@@ -6,8 +6,8 @@
 #include <cassert>
 
 #include "scene/bounds.hpp"
-#include "scene/loads/drive_kind.hpp"
-#include "scene/loads/end_moment.hpp"
+#include "scene/drive_kind.hpp"
+#include "scene/ends/end_moment.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

@@ -7,7 +7,7 @@
 
 namespace ropewalk {
 
-// Those of the shipped drives (scene/loads/drive_kind.cpp). They are called for by name: the linker would leave a
+// Those of the shipped drives (scene/drive_kind.cpp). They are called for by name: the linker would leave a
 // file that registers itself out of each program that needs nothing else from it, and the log would lose its
 // columns there.
 std::vector<TermKind> shipped_term_kinds();

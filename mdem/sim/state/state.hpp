@@ -128,7 +128,7 @@ struct Topology {
   // near them elements of both tubes do not touch each other otherwise, like those of one tube.
   bool ends_meet = false;
   // A slice of an endless rope: so many elements at each end of a strand are images of the elements one period away
-  // (scene/loads/periodic.hpp). All strands have as many elements. 0: no slice.
+  // (scene/ends/periodic.hpp). All strands have as many elements. 0: no slice.
   int images = 0;
   double period = 0;          // nm, at the start
   double period_inertia = 0;  // eV ps^2/nm^2, of its changes

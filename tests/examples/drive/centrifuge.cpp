@@ -7,7 +7,7 @@
 
 #include "scene/finer.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"

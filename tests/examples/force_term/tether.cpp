@@ -1,4 +1,4 @@
-// The worked example of docs/how-to/force-term.md: [[tether]] (mdem/scene/loads/tether.cpp), a force term with a memory.
+// The worked example of docs/how-to/force-term.md: [[tether]] (mdem/scene/interactions/tether.cpp), a force term with a memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>

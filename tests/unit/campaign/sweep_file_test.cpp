@@ -9,7 +9,7 @@
 #include <set>
 
 #include "model/error.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 
 namespace ropewalk {
 namespace {

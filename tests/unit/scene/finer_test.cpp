@@ -8,9 +8,9 @@
 #include <fstream>
 
 #include "scene/loads/fix.hpp"
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 #include "scene/loads/rotate.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/refine.hpp"

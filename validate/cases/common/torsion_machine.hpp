@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "model/parameters.hpp"
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 #include "sim/dynamics/simulation.hpp"
 
 namespace ropewalk::validate {

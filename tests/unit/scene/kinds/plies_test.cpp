@@ -14,7 +14,7 @@
 #include "model/units.hpp"
 #include "observe/centre_line.hpp"
 #include "run/run_directory.hpp"
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"

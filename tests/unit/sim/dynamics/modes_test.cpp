@@ -9,7 +9,7 @@
 #include "observe/mode_shape.hpp"
 #include "plan/sliding_rope.hpp"
 #include "scene/loads/fix.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

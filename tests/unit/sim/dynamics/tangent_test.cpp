@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "scene/loads/fix.hpp"
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 #include "sim/contact/line/law.hpp"
 #include "unit/support.hpp"
 

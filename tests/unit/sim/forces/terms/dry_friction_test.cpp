@@ -1,4 +1,4 @@
-// [[friction]]: sim/forces/terms/dry_friction.hpp and its table, scene/loads/friction.cpp.
+// [[friction]]: sim/forces/terms/dry_friction.hpp and its table, scene/interactions/friction.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,4 +1,4 @@
-// [[links]]: sim/forces/terms/links.hpp and its table, scene/loads/links.cpp.
+// [[links]]: sim/forces/terms/links.hpp and its table, scene/interactions/links.cpp.
 #include "sim/forces/terms/links.hpp"
 
 #include <gmock/gmock.h>

@@ -1,10 +1,10 @@
-#include "scene/loads/thermostat.hpp"
+#include "scene/bath/thermostat.hpp"
 
 #include <fmt/format.h>
 
 #include "model/counter_random.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
 

@@ -13,7 +13,7 @@
 #include "model/units.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

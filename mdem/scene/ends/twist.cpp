@@ -1,12 +1,12 @@
-#include "scene/loads/twist.hpp"
+#include "scene/ends/twist.hpp"
 
 #include <fmt/format.h>
 
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
-#include "scene/loads/end_moment.hpp"
+#include "scene/drive_kind.hpp"
+#include "scene/ends/end_moment.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

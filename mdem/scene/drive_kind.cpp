@@ -1,4 +1,4 @@
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 
 #include <fmt/format.h>
 

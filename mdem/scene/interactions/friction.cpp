@@ -10,7 +10,7 @@
 #include "model/units.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/terms/dry_friction.hpp"
 

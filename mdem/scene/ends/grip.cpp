@@ -1,4 +1,4 @@
-#include "scene/loads/grip.hpp"
+#include "scene/ends/grip.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 
 #include "model/contract.hpp"
 #include "scene/bounds.hpp"
-#include "scene/loads/drive_kind.hpp"
-#include "scene/loads/end_moment.hpp"
+#include "scene/drive_kind.hpp"
+#include "scene/ends/end_moment.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"

@@ -1,4 +1,4 @@
-// [failure]: scene/loads/failure.cpp.
+// [failure]: scene/interactions/failure.cpp.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 // as its own length of tube, so that a tube is as strong in elements of any length. The energy of the bond is lost.
 // The parts of the tube are then joined by nothing but contact; as before, elements within the exclusion along the
 // tube do not touch each other. Units nm, ps, eV.
-#include "scene/loads/failure.hpp"
+#include "scene/interactions/failure.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@
 #include "observe/bending.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/force_term.hpp"
 

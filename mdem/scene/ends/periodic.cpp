@@ -1,4 +1,4 @@
-#include "scene/loads/periodic.hpp"
+#include "scene/ends/periodic.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "model/error.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"

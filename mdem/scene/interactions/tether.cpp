@@ -15,7 +15,7 @@
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/key_table.hpp"
-#include "scene/loads/drive_kind.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/force_term.hpp"
 #include "sim/state/part_of_scene.hpp"
