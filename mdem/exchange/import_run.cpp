@@ -122,9 +122,8 @@ class Import {
   void check_account(const EnergyAccount& account, std::int64_t step) {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
     const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
-    const bool closes =
-        account_closes(mark_, now, account.kinetic, account.potential.bonds(), account.potential.vdw,
-                       prepared_.state.size());
+    const bool closes = account_closes(mark_, now, account.kinetic, account.potential.bonds(),
+                                       account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
           "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
@@ -136,8 +135,8 @@ class Import {
     marked_at_ = step;
   }
 
-  // Readings by the forces of this moment: LAMMPS keeps no means. The run may have been stopped between two rows: what
-  // it had summed up since the last one belongs to no row.
+  // Readings by the forces of this moment: LAMMPS keeps no means. The run may have been stopped between two rows:
+  // what it had summed up since the last one belongs to no row.
   EndReadings readings_at(const State& state) {
     gauges_.follow(state);
     gauges_.forget_work();
@@ -155,7 +154,7 @@ class Import {
   // stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
-    simulation.remember(memory_);
+    simulation.set_memory(memory_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);

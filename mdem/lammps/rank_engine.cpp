@@ -283,7 +283,7 @@ void RankEngine::build() {
   for (const Stretch& s : own_)
     for (int k = 0; k < s.count; ++k) element_[static_cast<std::size_t>(s.atom + k)] = s.element + k;
   list_.build(topology_, state_);
-  engine_.remember(model_->interaction, memories, model_->topology.elements(), lmp_->comm->me == 0);
+  engine_.set_memory(model_->interaction, memories, model_->topology.elements(), lmp_->comm->me == 0);
   steps_ = 0;
 }
 

@@ -44,7 +44,7 @@ SteppedScene::SteppedScene(std::shared_ptr<const Model> model, std::vector<std::
   first_energy_ = simulation_.total_energy();
 }
 
-SteppedScene::Turn::Turn(SteppedScene& of) : of(of) {
+SteppedScene::StepGuard::StepGuard(SteppedScene& of) : of(of) {
   if (of.stepping_.exchange(true)) throw std::runtime_error("the simulation is at work in another thread");
 }
 
@@ -69,7 +69,7 @@ void SteppedScene::divide_steps(int parts) {
 void SteppedScene::steps(std::int64_t count, bool energies) {
   if (count < 0) throw std::invalid_argument("the number of steps is negative");
   if (count == 0) return;
-  const Turn turn(*this);
+  const StepGuard guard(*this);
   forget();
   if (!own_.empty())
     steps_with_own_forces(count, energies);
@@ -107,7 +107,7 @@ void SteppedScene::steps_with_own_forces(std::int64_t count, bool energies) {
 }
 
 Relaxed SteppedScene::relax(const RelaxGoal& goal, long max_steps) {
-  const Turn turn(*this);
+  const StepGuard guard(*this);
   const py::gil_scoped_release release;
   forget();
   double looked = steady_seconds();

@@ -48,9 +48,9 @@ class SteppedScene {
   static constexpr double brief = 1e-3, patience = 0.1;  // s
 
   // While it lasts, the simulation belongs to this thread.
-  struct Turn {
-    explicit Turn(SteppedScene& of);
-    ~Turn() { of.stepping_ = false; }
+  struct StepGuard {
+    explicit StepGuard(SteppedScene& of);
+    ~StepGuard() { of.stepping_ = false; }
     SteppedScene& of;
   };
 

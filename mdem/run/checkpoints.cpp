@@ -21,14 +21,14 @@ RunCheckpoint Checkpoints::here() const {
   return c;
 }
 
-void Checkpoints::set_mark() {
-  mark_ = std::make_shared<const RunCheckpoint>(here());
+void Checkpoints::take_snapshot() {
+  snapshot_ = std::make_shared<const RunCheckpoint>(here());
   mark_step_ = moving_.state().step;
 }
 
-RunCheckpoint Checkpoints::here_with_mark() const {
+RunCheckpoint Checkpoints::with_snapshot() const {
   RunCheckpoint c = here();
-  if (mark_ && mark_->simulation != c.simulation) c.mark = mark_;
+  if (snapshot_ && snapshot_->simulation != c.simulation) c.snapshot = snapshot_;
   c.origin = origin;
   return c;
 }
@@ -46,7 +46,7 @@ void Checkpoints::write(const RunCheckpoint& c) {
 
 void Checkpoints::save(StopReason ends_for) {
   files_.sync();
-  RunCheckpoint c = here_with_mark();
+  RunCheckpoint c = with_snapshot();
   c.ends_for = ends_for;
   write(c);
 }
@@ -54,7 +54,7 @@ void Checkpoints::save(StopReason ends_for) {
 void Checkpoints::save_if_possible() {
   files_.sync();
   try {
-    write(here_with_mark());
+    write(with_snapshot());
   } catch (const InputError& e) {
     if (!fails_) listener_.tell(fmt::format("{}; the run goes on, and it is tried again", e.what()));
     fails_ = true;
@@ -76,7 +76,7 @@ void Checkpoints::save_here() {
 
 void Checkpoints::keep_here(StopReason ends_for) {
   files_.sync();
-  kept_ = here_with_mark();
+  kept_ = with_snapshot();
   kept_.ends_for = ends_for;
 }
 
@@ -95,19 +95,19 @@ void Checkpoints::write_results() {
   limits_.write();
 }
 
-void Checkpoints::save_mark() const {
-  if (!mark_ || mark_step_ <= saved_step_) return;
+void Checkpoints::save_snapshot() const {
+  if (!snapshot_ || mark_step_ <= saved_step_) return;
   files_.sync();
-  RunCheckpoint c = *mark_;
+  RunCheckpoint c = *snapshot_;
   c.origin = origin;
   files_.write_checkpoint(c);
 }
 
-void Checkpoints::save_mark_over_later() {
+void Checkpoints::save_snapshot_over_later() {
   if (saved_step_ <= moving_.state().step) return;
-  RunCheckpoint c = here_with_mark();
-  c.log = mark_->log;
-  c.frames = mark_->frames;
+  RunCheckpoint c = with_snapshot();
+  c.log = snapshot_->log;
+  c.frames = snapshot_->frames;
   write(c);
 }
 

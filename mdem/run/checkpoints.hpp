@@ -19,9 +19,9 @@ class Checkpoints {
   RunOrigin origin;
 
   // The last good state; null: none yet.
-  const std::shared_ptr<const RunCheckpoint>& mark() const { return mark_; }
-  void set_mark();
-  void set_mark(std::shared_ptr<const RunCheckpoint> earlier) { mark_ = std::move(earlier); }
+  const std::shared_ptr<const RunCheckpoint>& snapshot() const { return snapshot_; }
+  void take_snapshot();
+  void set_snapshot(std::shared_ptr<const RunCheckpoint> earlier) { snapshot_ = std::move(earlier); }
 
   // Throws InputError where it cannot be written. `ends_for`: see RunCheckpoint.
   void save(StopReason ends_for = StopReason::none);
@@ -38,9 +38,10 @@ class Checkpoints {
   // Writes the files that a stopped run leaves beside log and frames: final state, limits, events.
   void write_results();
   // The run broke off: the last good state is saved if it is newer than the checkpoint.
-  void save_mark() const;
-  // The run went back to the mark: a checkpoint later than this would know of more than log and frames then hold.
-  void save_mark_over_later();
+  void save_snapshot() const;
+  // The run went back to the snapshot: a checkpoint later than this would know of more than log and frames then
+  // hold.
+  void save_snapshot_over_later();
   // The state is that of the checkpoint on the disk.
   void stands_at_checkpoint() { saved_step_ = moving_.state().step; }
 
@@ -48,7 +49,7 @@ class Checkpoints {
 
  private:
   RunCheckpoint here() const;
-  RunCheckpoint here_with_mark() const;
+  RunCheckpoint with_snapshot() const;
   void write(const RunCheckpoint& checkpoint);
 
   MovingScene& moving_;
@@ -56,7 +57,7 @@ class Checkpoints {
   LimitGuard& limits_;
   const RunClock& clock_;
   RunListener& listener_;
-  std::shared_ptr<const RunCheckpoint> mark_;
+  std::shared_ptr<const RunCheckpoint> snapshot_;
   RunCheckpoint kept_;
   std::int64_t mark_step_ = 0, saved_step_ = -1;
   double longest_save_ = 0, due_ = 0;  // s

@@ -14,19 +14,19 @@ StopReason DynamicsLoop::go() {
   run_.listener.begin_loop(static_cast<double>(run_.step()), static_cast<double>(last_step));
   run_.checkpoints.begin_interval();
   StopReason end = run_.at_once;
-  if (end == StopReason::none && !run_.checkpoints.mark()) run_.way_back.set_mark();
+  if (end == StopReason::none && !run_.checkpoints.snapshot()) run_.rollback.take_snapshot();
   while (end == StopReason::none && run_.step() < last_step) {
-    const Turn turn = next_turn();
-    if (advance(turn)) end = end_of(turn);
+    const Stretch stretch = next_stretch();
+    if (advance(stretch)) end = end_of(stretch);
   }
   if (end == StopReason::none) end = StopReason::complete;
   if (end == StopReason::complete) run_.listener.end_loop();
   return run_.stop(end);
 }
 
-DynamicsLoop::Turn DynamicsLoop::next_turn() const {
+DynamicsLoop::Stretch DynamicsLoop::next_stretch() const {
   const RunSchedule& s = run_.schedule;
-  Turn t;
+  Stretch t;
   t.closely = !s.looks_rarely() || run_.moving.control.looks_closely(run_.moving.simulation);
   t.count = s.steps_to_next(run_.step(), t.closely, seconds_of_a_step_);
   t.step = run_.step() + t.count;
@@ -38,24 +38,24 @@ DynamicsLoop::Turn DynamicsLoop::next_turn() const {
   return t;
 }
 
-bool DynamicsLoop::advance(const Turn& t) {
+bool DynamicsLoop::advance(const Stretch& t) {
   const double began = steady_seconds();
   try {
     run_.moving.simulation.steps(t.count, t.logged || t.marked || t.step == run_.schedule.last_step());
   } catch (const NumericalError& e) {
     if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help ||
-        !run_.way_back.go_back(e.what(), t.closely))
+        !run_.rollback.roll_back(e.what(), t.closely))
       throw;
     return false;
   }
-  if ((t.marked || t.last) && !run_.way_back.is_sound() &&
-      run_.way_back.go_back("the account of energy did not close", t.closely))
+  if ((t.marked || t.last) && !run_.rollback.is_sound() &&
+      run_.rollback.roll_back("the account of energy did not close", t.closely))
     return false;
   seconds_of_a_step_ = std::max((steady_seconds() - began) / static_cast<double>(t.count), 1e-9);
   return true;
 }
 
-StopReason DynamicsLoop::end_of(const Turn& t) {
+StopReason DynamicsLoop::end_of(const Stretch& t) {
   const bool ends = t.last && run_.schedule.ends_with_the_scene();
   StopReason stop = t.checked ? run_.limits.check(t.framed) : StopReason::none;
   if (ends && stop == StopReason::refine) stop = StopReason::none;
@@ -64,7 +64,7 @@ StopReason DynamicsLoop::end_of(const Turn& t) {
   if (stop == StopReason::refine) return stop;  // without a mark: a resumed run has to come to it again
   if (t.marked) {
     run_.moving.control.lengthen(run_.moving.simulation);
-    run_.way_back.set_mark();
+    run_.rollback.take_snapshot();
   }
   if (stop == StopReason::none && t.logged && !ends && is_decided()) stop = StopReason::complete;
   if (stop == StopReason::none) stop = run_.asked_to_stop();

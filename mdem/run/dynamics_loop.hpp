@@ -17,17 +17,17 @@ class DynamicsLoop {
  private:
   // A number of steps after which something is due. What is due follows from the scene alone, and not from where
   // the run is to stop, so that a run that goes on is the one that was never stopped.
-  struct Turn {
+  struct Stretch {
     long count = 0;
     std::int64_t step = 0;  // at its end
     bool closely = false;   // a device is looked at as often as this processor
     bool last = false, logged = false, marked = false, framed = false, checked = false;
   };
-  Turn next_turn() const;
+  Stretch next_stretch() const;
   // False where the run went back.
-  bool advance(const Turn& turn);
+  bool advance(const Stretch& stretch);
   // Whether the run ends after it.
-  StopReason end_of(const Turn& turn);
+  StopReason end_of(const Stretch& stretch);
   bool is_decided();
   std::string status() const;
 

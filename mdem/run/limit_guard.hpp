@@ -24,7 +24,7 @@ class LimitGuard {
   // Takes over the limits of a run that goes on, without those passed after `step`.
   void inherit(const LimitsFile& earlier, std::int64_t step);
   // The run went back to a state with these records.
-  void go_back_to(const LimitsFile& earlier, std::int64_t step) { watch_.inherit_from(earlier.limits, step); }
+  void roll_back_to(const LimitsFile& earlier, std::int64_t step) { watch_.inherit_from(earlier.limits, step); }
   void add(const RefinementRecord& refinement) { refinements_.push_back(refinement); }
 
   OnLimit on_limit() const { return on_limit_; }

@@ -48,7 +48,7 @@ RefinementRecord go_on_finer(const RunParts& coarse, RunParts& fine) {
       fine.schedule.end_at(-1, static_cast<double>(coarse.schedule.last_step()) * from.prepared.time_step);
   }
   to.simulation = start(to.scene, at);
-  to.simulation.remember(from.simulation.halved_memory(heirs(from.prepared.topology, how)));
+  to.simulation.set_memory(from.simulation.halved_memory(heirs(from.prepared.topology, how)));
   to.simulation.inherit_from(to.simulation.forces().force, to.simulation.forces().torque,
                              from.simulation.account());
   to.simulation.set_gauges(to.observer.loading.ends, to.prepared.state);

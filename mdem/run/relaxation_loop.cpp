@@ -44,7 +44,7 @@ bool RelaxationLoop::goes_on_after(long step) {
   if (step % 100 == 0) {
     if (run_.files.row_step() != run_.step()) run_.write_row();
     stop_ = run_.limits.check(false);
-    run_.way_back.set_mark();
+    run_.rollback.take_snapshot();
   }
   if (run_.listener.wants_progress()) run_.listener.progress(static_cast<double>(step), status());
   if (stop_ == StopReason::none) stop_ = run_.asked_to_stop();
@@ -60,9 +60,11 @@ std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
                                                         end.saddles, end.saddles > 1 ? "s" : "")
                                           : std::string();
   const std::string stays =
-      end.falls > 0 ? fmt::format("; it rests on a saddle, and stays there: along one motion the energy falls by {:.2g} eV or more",
-                                  end.falls)
-                    : std::string();
+      end.falls > 0
+          ? fmt::format(
+                "; it rests on a saddle, and stays there: along one motion the energy falls by {:.2g} eV or more",
+                end.falls)
+          : std::string();
   if (end.at_rest && std::isinf(end.above))
     return fmt::format("relaxed: largest force {:.3g} eV/nm; along some soft motion the energy may still fall{}",
                        end.force, way);

@@ -142,7 +142,7 @@ RunResult Run::broken_off(const std::exception& e) {
   const std::string why = failure_words(e);
   std::exception_ptr error = std::current_exception();
   try {
-    parts_.checkpoints.save_mark();
+    parts_.checkpoints.save_snapshot();
   } catch (const std::exception&) {
     // The last checkpoint stands.
   }

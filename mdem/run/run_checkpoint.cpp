@@ -92,7 +92,7 @@ std::optional<RunCheckpoint> checkpoint_from(const std::string& path) {
     RunOrigin origin;
     visit_origin(read, origin);
     RunCheckpoint c = state_from(read, path);
-    if (!read.bytes.empty()) c.mark = std::make_shared<const RunCheckpoint>(state_from(read, path));
+    if (!read.bytes.empty()) c.snapshot = std::make_shared<const RunCheckpoint>(state_from(read, path));
     c.origin = origin;
     return c;
   } catch (const std::runtime_error&) {
@@ -165,13 +165,13 @@ RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint) {
   // Room is reserved, since a growing string takes up to twice its size.
   std::size_t room = 1 << 18;
-  for (const RunCheckpoint* c = &checkpoint; c; c = c->mark.get()) room += c->simulation.size();
+  for (const RunCheckpoint* c = &checkpoint; c; c = c->snapshot.get()) room += c->simulation.size();
   Writer write;
   write.bytes.reserve(room);
   write.bytes += title + std::string(hash_length, '0') + "\n";
   const std::size_t head = write.bytes.size();
   visit_origin(write, checkpoint.origin);
-  for (const RunCheckpoint* c = &checkpoint; c; c = c->mark.get()) {
+  for (const RunCheckpoint* c = &checkpoint; c; c = c->snapshot.get()) {
     visit_state(write, *c);
     write(limits_json(c->limits));
   }
@@ -216,10 +216,10 @@ ResumePoint find_resume_point(const RunDirectory& dir) {
   if (with_all) return out;
   RunCheckpoint& c = out.checkpoint;
   c.frames = whole_frames(dir, c.frames.bytes);
-  if (c.mark && c.mark->frames.bytes > c.frames.bytes) {
-    RunCheckpoint mark = *c.mark;
-    mark.frames = c.frames;
-    c.mark = std::make_shared<const RunCheckpoint>(mark);
+  if (c.snapshot && c.snapshot->frames.bytes > c.frames.bytes) {
+    RunCheckpoint snapshot = *c.snapshot;
+    snapshot.frames = c.frames;
+    c.snapshot = std::make_shared<const RunCheckpoint>(snapshot);
   }
   out.remarks.push_back(c.frames.bytes == 0 ? "frames begin anew here; those before are lost"
                                             : "frames go on behind the last whole one; those between are lost");

@@ -18,13 +18,13 @@ namespace ropewalk {
 
 // The inputs that the motion of a run follows from.
 struct RunOrigin {
-  std::string scene;              // the text
-  std::vector<std::string> sets;  // hashes of the parameter sets
+  std::string scene;               // the text
+  std::vector<std::string> sets;   // hashes of the parameter sets
   std::vector<std::string> files;  // hashes of the files that drives were read from
-  std::string state;              // hash of the start, of a scene that reads its state from a file
-  std::string version, git_id;    // of the program
-  std::string instructions;       // see instructions_in_use()
-  std::string device;             // as --device names it; empty: none
+  std::string state;               // hash of the start, of a scene that reads its state from a file
+  std::string version, git_id;     // of the program
+  std::string instructions;        // see instructions_in_use()
+  std::string device;              // as --device names it; empty: none
 };
 // The origin of a run in this directory by this program, without a device.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);
@@ -38,8 +38,8 @@ struct RunCheckpoint {
   StopReason ends_for = StopReason::none;  // the run takes no further step, for a limit that was passed here
   LimitsFile limits;
   std::string simulation;
-  std::shared_ptr<const RunCheckpoint> mark;  // the last state to go back to; null: this one
-  RunOrigin origin;                           // not of a mark
+  std::shared_ptr<const RunCheckpoint> snapshot;  // the last state to go back to; null: this one
+  RunOrigin origin;                               // not of a snapshot
 };
 
 // The one that was there before is kept as checkpoint-before.bin.

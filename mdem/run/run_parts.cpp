@@ -14,7 +14,7 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
       files(std::move(dir), listener),
       limits(settings.on_limit, moving, schedule, files, listener),
       checkpoints(moving, files, limits, clock, listener),
-      way_back(moving, files, limits, stops, checkpoints, listener) {
+      rollback(moving, files, limits, stops, checkpoints, listener) {
   use_device();
 }
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "run/rollback.hpp"
 #include "run/run_settings.hpp"
-#include "run/way_back.hpp"
 
 namespace ropewalk {
 
@@ -39,7 +39,7 @@ struct RunParts {
   RunFiles files;
   LimitGuard limits;
   Checkpoints checkpoints;
-  WayBack way_back;
+  Rollback rollback;
 
   LogRow last_row;
   StopReason at_once = StopReason::none;  // before the first step

@@ -66,7 +66,7 @@ void Run::restore(RunCheckpoint c) {
   RunParts& p = parts_;
   const RunDirectory& dir = p.files.directory();
   try {
-    if (c.mark) p.way_back.restore(*c.mark);
+    if (c.snapshot) p.rollback.restore(*c.snapshot);
     p.moving.simulation.restore(c.simulation);
   } catch (const std::runtime_error& e) {
     throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
@@ -91,10 +91,10 @@ void Run::restore(RunCheckpoint c) {
     p.at_once = p.limits.check(true);
   p.took_all_steps = std::filesystem::exists(dir.manifest()) && read_manifest(dir.manifest()).status != "running";
   p.checkpoints.stands_at_checkpoint();
-  if (c.mark)
-    p.checkpoints.set_mark(c.mark);
+  if (c.snapshot)
+    p.checkpoints.set_snapshot(c.snapshot);
   else
-    p.way_back.set_mark();
+    p.rollback.take_snapshot();
   // Files of the earlier end; the next end writes them again.
   std::error_code ignored;
   for (const std::string& path : {dir.final_state(), dir.final_memory(), dir.plan_check()})

@@ -56,7 +56,7 @@ void read_records(StateMemory& memory, const std::string& sum) {
   CsvReader csv(memory.path);
   const char* remedy = "bring the file back from a copy";
   if (!csv.next() || csv.line_text() != memory_header) csv.fail("", "is no memory of force terms", remedy);
-  std::map<std::pair<std::string, std::size_t>, TermMemory> records;
+  std::map<std::pair<std::string, std::size_t>, TermState> records;
   bool belongs = false;
   while (csv.next()) {
     for (const std::string_view comment : csv.comments()) belongs = belongs || comment == sum_words + sum;
@@ -69,7 +69,7 @@ void read_records(StateMemory& memory, const std::string& sum) {
     const double which = csv.number(1, "which"), element = csv.number(2, "element");
     if (!(which >= 0 && which < 1e6) || !(element >= no_element && element < 1e9))
       csv.fail("", "names no element", remedy);
-    TermMemory& of = records[{std::string(csv.cells()[0]), static_cast<std::size_t>(which)}];
+    TermState& of = records[{std::string(csv.cells()[0]), static_cast<std::size_t>(which)}];
     if (element != no_element) of.push_back({static_cast<int>(element), numbers_in(csv, csv.cells()[3])});
   }
   for (auto& [term, of] : records) {

@@ -26,8 +26,8 @@
 #include "model/error.hpp"
 #include "observe/bending.hpp"
 #include "scene/bounds.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/force_term.hpp"
 
@@ -96,8 +96,8 @@ class TubeFailure : public ForceTerm {
     placed_ = true;
   }
 
-  Happened advance(double, const State& state) override {
-    Happened now;
+  StateUpdate advance(double, const State& state) override {
+    StateUpdate now;
     for (int t = 0; t < topology_.tubes(); ++t)
       for (int i = topology_.tube_begin[t]; i + 1 < topology_.tube_begin[t + 1]; ++i)
         if (!topology_.is_image(i) && breaks(topology_.type_of(t), state, i)) {
@@ -107,12 +107,12 @@ class TubeFailure : public ForceTerm {
     return now;
   }
 
-  TermMemory memory() const override {
-    TermMemory out;
+  TermState memory() const override {
+    TermState out;
     for (const BrokenBond& b : all_) out.push_back({b.element, {b.time, b.place.x(), b.place.y(), b.place.z()}});
     return out;
   }
-  void remember(const TermMemory& memory) override {
+  void set_memory(const TermState& memory) override {
     placed_ = true;
     all_.clear();
     broken_.assign(limit_.size(), 0);
@@ -125,8 +125,8 @@ class TubeFailure : public ForceTerm {
       for (const int e : with_images(r.element)) broken_[static_cast<std::size_t>(e)] = 1;
     }
   }
-  void begin_with(const TermMemory& memory) override {
-    remember(memory);
+  void begin_with(const TermState& memory) override {
+    set_memory(memory);
     for (BrokenBond& b : all_) b.time = 0;
     placed_ = false;
   }
@@ -159,8 +159,8 @@ class TubeFailure : public ForceTerm {
                                  [](const BrokenBond& x, const BrokenBond& y) { return x.element < y.element; }),
                 one);
     return static_cast<double>(bonds.size()) * bond_energy(type.bond, type.element_length, d,
-                                                                   frame_of(state.orientation[i]),
-                                                                   frame_of(state.orientation[i + 1]))
+                                                           frame_of(state.orientation[i]),
+                                                           frame_of(state.orientation[i + 1]))
                                                    .total();
   }
   // The bond behind this element, and its images in a slice.

@@ -72,10 +72,10 @@ class Tether : public ForceTerm {
         ends_[e].centre = Vector3(sums[3 * e], sums[3 * e + 1], sums[3 * e + 2]) / count(ends_[e]);
   }
 
-  Happened advance(double, const State&) override {
+  StateUpdate advance(double, const State&) override {
     if (broken_ || away_ || !(distance() > breaks_at_)) return {};
     broken_ = true;
-    return first_ == elsewhere ? Happened() : Happened{stored(), 1};
+    return first_ == elsewhere ? StateUpdate() : StateUpdate{stored(), 1};
   }
 
   TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
@@ -97,12 +97,12 @@ class Tether : public ForceTerm {
   }
 
   bool remembers() const override { return true; }
-  TermMemory memory() const override {
+  TermState memory() const override {
     if (first_ == elsewhere) return {};
     return {{ends_[0].elements.front(), {rest_, broken_ ? 1.0 : 0.0}}};
   }
 
-  void remember(const TermMemory& memory) override {
+  void set_memory(const TermState& memory) override {
     if (memory.empty()) return;  // nothing has happened yet
     const std::vector<double>& numbers = memory.front().numbers;
     if (memory.size() > 1 || numbers.size() != 2 || !(numbers[0] >= 0) || (numbers[1] != 0 && numbers[1] != 1))

@@ -227,7 +227,7 @@ void DeviceStepper::drift(double dt, const State& s, const NeighbourList& list) 
                axis_, velocity_, spin_, told_);
 }
 
-DeviceStepper::Told DeviceStepper::compute(Forces& forces) {
+DeviceStepper::StepSummary DeviceStepper::compute(Forces& forces) {
   const int count = static_cast<int>(hosted_.size());
   if (interaction_.law) {
     constexpr int per_group = GROUP / LANES;
@@ -254,20 +254,20 @@ DeviceStepper::Told DeviceStepper::compute(Forces& forces) {
     forces.force.set(static_cast<std::size_t>(hosted_[k]), {f[0], f[1], f[2]});
     forces.torque.set(static_cast<std::size_t>(hosted_[k]), {f[3], f[4], f[5]});
   }
-  Told told;
+  StepSummary summary;
   int slips = NO_ELEMENT;
   for (int g = 0; g < groups_; ++g) {
     const auto of = [&](int c) { return sums_[static_cast<std::size_t>(c * groups_ + g)]; };
-    told.fastest.speed2 = std::max(told.fastest.speed2, of(TOLD_SPEED2));
-    told.fastest.spin2 = std::max(told.fastest.spin2, of(TOLD_SPIN2));
-    told.fastest.sum += of(SUM_SPEEDS);
-    told.change = both(told.change, {of(TOLD_MOVED), of(SUM_MOVED), of(TOLD_TURN), of(TOLD_TURN_Z)});
-    told.damping_power += of(TOLD_POWER);
+    summary.fastest.speed2 = std::max(summary.fastest.speed2, of(TOLD_SPEED2));
+    summary.fastest.spin2 = std::max(summary.fastest.spin2, of(TOLD_SPIN2));
+    summary.fastest.sum += of(SUM_SPEEDS);
+    summary.change = both(summary.change, {of(TOLD_MOVED), of(SUM_MOVED), of(TOLD_TURN), of(TOLD_TURN_Z)});
+    summary.damping_power += of(TOLD_POWER);
     slips = std::min(slips, static_cast<int>(of(TOLD_SLIPS)));
   }
-  if (!std::isfinite(told.change.sum)) told.change.moved = std::numeric_limits<double>::infinity();
-  if (slips != NO_ELEMENT) told.slipping_bond = slips;
-  return told;
+  if (!std::isfinite(summary.change.sum)) summary.change.moved = std::numeric_limits<double>::infinity();
+  if (slips != NO_ELEMENT) summary.slipping_bond = slips;
+  return summary;
 }
 
 void DeviceStepper::give_places(State& s) const {

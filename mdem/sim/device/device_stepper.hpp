@@ -25,7 +25,7 @@ std::string not_for_a_device(const Topology& topology, const Interaction& intera
 class DeviceStepper {
  public:
   // Sums over all elements in one step.
-  struct Told {
+  struct StepSummary {
     Fastest fastest;           // velocities of the drift
     Change change;             // displacements since the list was built
     double damping_power = 0;  // eV/ps
@@ -54,7 +54,7 @@ class DeviceStepper {
   // Moves its elements by dt, and takes from `state` the others, which have been moved already.
   void drift(double dt, const State& state, const NeighbourList& list);
   // The forces on all elements where they are now; those on hosted elements are written to `forces`.
-  Told compute(Forces& forces);
+  StepSummary compute(Forces& forces);
   // The state and the forces of all elements; those of hosted elements stay as they are.
   void give(State& state, Forces& forces) const;
   // The positions and orientations alone.

@@ -158,8 +158,8 @@ bool are_unit_vectors(const Vec3Array& v) {
 }
 
 bool could_be(const ListOrigin& list) {
-  return all_within(list.memory) && list.skin > 0 && list.skin < largest_number && all_within(list.twist) && all_xyz_within(list.position) &&
-         are_unit_vectors(list.axis);
+  return all_within(list.memory) && list.skin > 0 && list.skin < largest_number && all_within(list.twist) &&
+         all_xyz_within(list.position) && are_unit_vectors(list.axis);
 }
 
 bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
@@ -181,7 +181,8 @@ bool Simulation::could_go_on(double step_of_scene) const {
   constexpr std::int64_t most_steps = 1000000000000000;
   bool fine = time_step_ > 0 && time_step_ < 1e3 * step_of_scene && divided_ >= 1 && divided_ <= 1024 &&
               s.step >= 0 && s.step < most_steps && list_age_ >= 0 && list_age_ < most_steps &&
-              could_be(relaxation_, s.step, 1e3 * step_of_scene) && rest_.step <= s.step && rest_.saddles >= 0 && rest_.falls >= 0 &&
+              could_be(relaxation_, s.step, 1e3 * step_of_scene) && rest_.step <= s.step && rest_.saddles >= 0 &&
+              rest_.falls >= 0 &&
               all_within(std::array{s.time, account_.work, account_.dissipated, account_.heat, gauges_.sums.since});
   fine = fine && all_within(thermostat_variables_);
   for (const Vec3Array* v : {&s.position, &s.velocity, &s.angular_velocity, &forces_.force, &forces_.torque})
@@ -195,7 +196,7 @@ bool Simulation::could_go_on(double step_of_scene) const {
 }
 
 std::string Simulation::serialise() const {
-  fetch();
+  download();
   Writer write;
   // The numbers of one element: 13 of its state, 6 of its place and axis in the neighbour list, 6 of its force and
   // torque. Room is reserved, since a growing string takes up to twice its size.
@@ -211,7 +212,7 @@ std::string Simulation::serialise() const {
 }
 
 void Simulation::restore(const std::string& bytes) {
-  come_back();
+  sync_to_host();
   Reader read{{bytes}};
   CheckpointHead head;
   read(head);
@@ -229,7 +230,8 @@ void Simulation::restore(const std::string& bytes) {
   visit_checkpoint(read, *this, list);
   if (thermostat_variables_.size() != variables)
     throw std::runtime_error("the checkpoint holds " + std::to_string(thermostat_variables_.size()) +
-                             " internal variables of a thermostat, that of the scene has " + std::to_string(variables));
+                             " internal variables of a thermostat, that of the scene has " +
+                             std::to_string(variables));
   if (!read.bytes.empty()) throw std::runtime_error("the checkpoint is longer than the state of this scene");
   if (!could_go_on(step_of_scene) || !could_be(list))
     throw std::runtime_error(
@@ -238,11 +240,12 @@ void Simulation::restore(const std::string& bytes) {
   list_.skin = list.skin;
   list_.build(topology_, std::move(list.position), std::move(list.axis));
   list_.set_twist(list.twist);
-  engine_.remember(interaction_, list.memory, topology_.elements());
+  engine_.set_memory(interaction_, list.memory, topology_.elements());
   engine_.prepare_again(topology_, list_, state_);
   // The line law's list, which the skin of the next one follows from.
   Forces made(state_.size());
-  if (tunes_skin_ && engine_.contact()) engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
+  if (tunes_skin_ && engine_.contact())
+    engine_.compute(topology_, interaction_, list_, state_, made, {Parts::contact, false});
 }
 
 }  // namespace ropewalk

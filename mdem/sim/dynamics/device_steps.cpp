@@ -11,8 +11,9 @@
 namespace ropewalk {
 
 void Simulation::use_device(const std::string& name) {
-  come_back();
-  if (stepping_.thermostat) throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
+  sync_to_host();
+  if (stepping_.thermostat)
+    throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
   if (stepping_.runge_kutta)
     throw std::invalid_argument("a device cannot run this scene: devices have no run.integrator = \"rk4\"");
   device_ = {};
@@ -20,8 +21,8 @@ void Simulation::use_device(const std::string& name) {
 }
 
 // The host keeps the elements that loads act on or read, and the ends, which the gauges follow: few, as a rule.
-void Simulation::hand_over() {
-  if (device_.goes_on) return;
+void Simulation::upload() {
+  if (device_.device_is_current) return;
   std::vector<int> hosted = loaded_;
   const auto add = [&](const std::vector<int>& more) { hosted.insert(hosted.end(), more.begin(), more.end()); };
   for (const auto& load : loads_) add(load->reads(topology_));
@@ -39,7 +40,7 @@ void Simulation::hand_over() {
     }
   }
   device_.stepper->take(state_, forces_, std::move(hosted), list_);
-  device_.goes_on = true;
+  device_.device_is_current = true;
 }
 
 const NeighbourList& Simulation::list() const {
@@ -48,11 +49,11 @@ const NeighbourList& Simulation::list() const {
 }
 
 // Const: a caller sees the same state, whether the device or this processor holds it.
-void Simulation::fetch() const {
-  if (!device_.ahead && !device_.energies_missing) return;
+void Simulation::download() const {
+  if (!device_.host_is_stale && !device_.energies_missing) return;
   auto& self = const_cast<Simulation&>(*this);
-  if (device_.ahead) device_.stepper->give(self.state_, self.forces_);
-  self.device_.ahead = false;
+  if (device_.host_is_stale) device_.stepper->give(self.state_, self.forces_);
+  self.device_.host_is_stale = false;
   if (!device_.energies_missing) return;
   if (!list_.has_pairs()) self.list_.find_pairs(topology_);
   Forces all(state_.size());
@@ -62,35 +63,35 @@ void Simulation::fetch() const {
   self.device_.energies_missing = false;
 }
 
-void Simulation::come_back() {
-  fetch();
+void Simulation::sync_to_host() {
+  download();
   if (!list_.has_pairs()) list_.find_pairs(topology_);
-  device_.goes_on = false;
+  device_.device_is_current = false;
 }
 
 void Simulation::compute_on_device() {
-  device_.ahead = true;
+  device_.host_is_stale = true;
   device_.energies_missing = false;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   forces_.energy = {unknown, unknown, unknown, unknown, unknown, unknown};
-  DeviceStepper::Told told = device_.stepper->compute(forces_);
+  DeviceStepper::StepSummary summary = device_.stepper->compute(forces_);
   const MotionBound bound(topology_.largest_radius(), part_step());
-  if (!bound.holds(told.fastest)) {
-    fetch();
+  if (!bound.holds(summary.fastest)) {
+    download();
     refuse_blow_up(bound);
   }
   ++list_age_;
-  if (list_.cutoff > 0 && list_.stale(told.change)) {
+  if (list_.cutoff > 0 && list_.stale(summary.change)) {
     const double began = omp_get_wtime();
     device_.stepper->give_places(state_);
     list_.begin(topology_, state_);
     list_age_ = 0;
     device_.stepper->use_list(list_);
     list_seconds_ += omp_get_wtime() - began;
-    told = device_.stepper->compute(forces_);
+    summary = device_.stepper->compute(forces_);
   }
-  forces_.damping_power = told.damping_power;
-  forces_.slipping_bond = told.slipping_bond;
+  forces_.damping_power = summary.damping_power;
+  forces_.slipping_bond = summary.slipping_bond;
   forces_.lost = 0;
   add_point_loads();
   check_slip();

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "model/contract.hpp"
-#include "model/error.hpp"
 #include "model/counter_random.hpp"
+#include "model/error.hpp"
 #include "sim/dynamics/fire.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/motion.hpp"
@@ -92,7 +92,7 @@ Simulation::Motion Simulation::free_accelerations(const Motion& forces) const {
 }
 
 double Simulation::largest_force() const {
-  fetch();
+  download();
   const Motion free = free_accelerations({forces_.force, forces_.torque});
   double largest = 0;
   for_elements(topology_, [&](const TubeType& type, std::size_t i) {
@@ -207,9 +207,10 @@ double Simulation::above_minimum(double enough, long most) const {
   return power > 0 ? unknown : above;
 }
 
-// The mode of K x = lambda M x with the lowest lambda: the steepest way down from a saddle. The search begins at the
-// motion x, which must have a part of the mode. The energy falls much farther along the mode than along x, whose stiff
-// parts cost energy. The method is LOBPCG with one vector: A. V. Knyazev, SIAM J. Sci. Comput. 23, 517 (2001), DOI 10.1137/S1064827500366124.
+// The mode of K x = lambda M x with the lowest lambda: the steepest way down from a saddle. The search begins at
+// the motion x, which must have a part of the mode. The energy falls much farther along the mode than along x,
+// whose stiff parts cost energy. The method is LOBPCG with one vector: A. V. Knyazev, SIAM J. Sci. Comput. 23, 517
+// (2001), DOI 10.1137/S1064827500366124.
 Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
   constexpr long at_once = 25;     // iterations between two looks at lambda
   constexpr double change = 0.01;  // of lambda, of one look to the next, that ends the search
@@ -351,7 +352,7 @@ void Simulation::end_relaxation() {
 }
 
 bool Simulation::relax(double tolerance, long max_steps, const std::function<bool(long)>& progress) {
-  come_back();
+  sync_to_host();
   end_relaxation();
   begin_relaxation({tolerance, std::numeric_limits<double>::infinity()});
   const PartEnd end = relax_part(max_steps, progress);
@@ -361,7 +362,7 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
 
 // If the forces are small and the energy is not, the forces have to become smaller.
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
-  come_back();
+  sync_to_host();
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // of the goal: what rests here without a minimum rests on a saddle

@@ -33,7 +33,8 @@ void refuse_places(const State& s) {
                            "start from another state");
   for (std::size_t i = 0; i < s.size(); ++i)
     if (s.position[i].lpNorm<Eigen::Infinity>() > farthest_coordinate)
-      throw NumericalError(s.step, static_cast<int>(i), "it lies more than 3 cm from the origin, where coordinates end",
+      throw NumericalError(s.step, static_cast<int>(i),
+                           "it lies more than 3 cm from the origin, where coordinates end",
                            "move the rope to the origin");
 }
 
@@ -108,7 +109,7 @@ void Simulation::steps(long count, bool energies) {
   const bool always = relaxes_spins(loads_);
   for (long k = 0; k < count; ++k) {
     const double began = omp_get_wtime(), elsewhere = engine_seconds() + list_seconds_;
-    if (device_.stepper) hand_over();
+    if (device_.stepper) upload();
     step_once((energies && k + 1 == count) || always);
     integration_seconds_ += omp_get_wtime() - began - (engine_seconds() + list_seconds_ - elsewhere);
   }
@@ -130,7 +131,8 @@ void Simulation::step_once(bool energies) {
 void Simulation::kick(double dt) {
   if (device_.stepper) {
     device_.stepper->kick(dt);
-    for (const Segment& part : device_.hosted) ropewalk::kick(topology_, nullptr, rows_of(forces_), dt, part, state_);
+    for (const Segment& part : device_.hosted)
+      ropewalk::kick(topology_, nullptr, rows_of(forces_), dt, part, state_);
   } else {
     kick_all(dt);
   }
@@ -210,7 +212,8 @@ void Simulation::update_list() {
   Change all;  // in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (list_.stale(all)) {
-    if (tunes_skin_ && engine_.contact()) list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
+    if (tunes_skin_ && engine_.contact())
+      list_.skin = engine_.contact()->best_skin(topology_, list_.skin, list_age_);
     list_.build(topology_, state_);
     list_age_ = 0;
   }
@@ -256,7 +259,7 @@ void Simulation::relax_spins_if_due() {
   if (increments(state_.time) == increments(state_.time - time_step_)) return;
   if (device_.stepper) device_.energies_missing = true;
   const double had = total_energy();
-  come_back();
+  sync_to_host();
   relax_spins(topology_, state_);
   compute();
   account_.dissipated += had - total_energy();
@@ -264,7 +267,7 @@ void Simulation::relax_spins_if_due() {
 
 void Simulation::use_loads(LoadsAndConstraints loads) {
   end_relaxation();
-  come_back();
+  sync_to_host();
   const auto add = [this](double sign) {
     for (const PointLoad& load : point_loads_) {
       forces_.force.add(static_cast<std::size_t>(load.element), sign * load.force);
@@ -284,16 +287,17 @@ EndReadings Simulation::read_gauges() {
 }
 
 void Simulation::use_thermostat(std::shared_ptr<const Thermostat> thermostat) {
-  if (device_.stepper && thermostat) throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
+  if (device_.stepper && thermostat)
+    throw std::invalid_argument("a device cannot run this scene: devices have no thermostat");
   stepping_.thermostat = std::move(thermostat);
   std::vector<double> variables;
   if (stepping_.thermostat) variables = stepping_.thermostat->initial_variables();
   if (variables.size() != thermostat_variables_.size()) thermostat_variables_ = std::move(variables);
 }
 
-void Simulation::remember(const std::vector<double>& memory) {
-  come_back();
-  engine_.remember(interaction_, memory, topology_.elements());
+void Simulation::set_memory(const std::vector<double>& memory) {
+  sync_to_host();
+  engine_.set_memory(interaction_, memory, topology_.elements());
   engine_.prepare_again(topology_, list_, state_);
   compute();
 }

@@ -1,5 +1,5 @@
-// Dynamics of a scene: steps of velocity Verlet (sim/dynamics/verlet.hpp) with an account of the energy that comes in
-// and goes out; relaxation; checkpoints.
+// Dynamics of a scene: steps of velocity Verlet (sim/dynamics/verlet.hpp) with an account of the energy that comes
+// in and goes out; relaxation; checkpoints.
 //
 // total energy - account().supplied() is constant up to the error of the integration.
 #pragma once
@@ -64,8 +64,8 @@ class Simulation {
   const Topology& topology() const { return topology_; }
   const Interaction& interaction() const { return interaction_; }
   const LoadsAndConstraints& loads() const { return loads_; }
-  const State& state() const { return fetch(), state_; }
-  const Forces& forces() const { return fetch(), forces_; }
+  const State& state() const { return download(), state_; }
+  const Forces& forces() const { return download(), forces_; }
   // Time and step of state(), without a copy of the state from a device.
   double time() const { return state_.time; }
   std::int64_t step_count() const { return state_.step; }
@@ -85,26 +85,26 @@ class Simulation {
   double heat() const { return account_.heat; }
   double list_seconds() const { return list_seconds_; }
   double integration_seconds() const { return integration_seconds_; }
-  // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their work
-  // there counts. The gauges stay on their elements.
+  // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their
+  // work there counts. The gauges stay on their elements.
   void use_loads(LoadsAndConstraints loads);
   // From the next step on; none: no bath. Its heat so far stays in the account. Its internal variables keep their
   // values where the new thermostat has as many as the old one, as where the same one gets another temperature.
   void use_thermostat(std::shared_ptr<const Thermostat> thermostat);
-  // A device moves the elements that no load acts on, from the next step on. open_device() knows the names of devices. The
-  // simulation itself still computes the energies, when a caller asks for them. Throws std::invalid_argument where there
-  // is no such device, or where the device cannot compute the scene.
+  // A device moves the elements that no load acts on, from the next step on. open_device() knows the names of
+  // devices. The simulation itself still computes the energies, when a caller asks for them. Throws
+  // std::invalid_argument where there is no such device, or where the device cannot compute the scene.
   void use_device(const std::string& name);
   const DeviceStepper* device() const { return device_.stepper.get(); }
   // On these elements, before the first step; without it they are the ends of all tubes. Turns count from `start`.
   void set_gauges(EndElements ends, const State& start) {
-    come_back();
+    sync_to_host();
     gauges_ = Gauges(topology_, std::move(ends), start);
   }
   // Mean forces and torques at both ends since the last reading; those of this moment where no time has passed.
   EndReadings read_gauges();
   double total_energy() const {
-    fetch();
+    download();
     return forces_.energy.potential() + kinetic_energy(topology_, state_);
   }
   // Largest force in eV/nm, torques counted as torque over radius; constrained components left out.
@@ -118,7 +118,7 @@ class Simulation {
   // Goes on with a run that another engine has carried on: its last total forces and its account of energy.
   void inherit_from(const Vec3Array& force, const Vec3Array& torque, const EnergySupply& account) {
     ROPEWALK_EXPECTS(force.size() == state_.size() && torque.size() == state_.size());
-    come_back();
+    sync_to_host();
     forces_.force = force;
     forces_.torque = torque;
     account_ = account;
@@ -139,7 +139,7 @@ class Simulation {
   // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }
-  void remember(const std::vector<double>& memory);
+  void set_memory(const std::vector<double>& memory);
   // The memories of all force terms for the same rope on the finer chain; `heirs`: see sim/dynamics/refine.hpp.
   std::vector<double> halved_memory(const std::vector<int>& heirs) const {
     return engine_.terms().halved_memory(heirs);
@@ -153,11 +153,11 @@ class Simulation {
 
   double part_step() const { return time_step_ / divided_; }
   void step_once(bool energies);
-  // fetch() copies the newest state and forces from the device. After come_back() this processor moves all elements, until
-  // hand_over() gives them to the device again.
-  void fetch() const;
-  void come_back();
-  void hand_over();
+  // download() copies the newest state and forces from the device. After sync_to_host() this processor moves all
+  // elements, until upload() gives them to the device again.
+  void download() const;
+  void sync_to_host();
+  void upload();
   void compute_on_device();
   [[noreturn]] void refuse_blow_up(const MotionBound& bound) const;
   void kick(double dt);
@@ -218,14 +218,15 @@ class Simulation {
   // A copy of a simulation has no device. Copying is an error while the device has a newer state.
   struct OwnDevice {
     std::shared_ptr<DeviceStepper> stepper;  // its own
-    bool goes_on = false;           // from where it is, with the loads and gauges of now
-    bool ahead = false;             // its state is newer than the one here
-    bool energies_missing = false;  // those of its state are asked for and not computed yet
-    std::vector<Segment> hosted;    // what this processor moves
+    bool device_is_current = false;          // from where it is, with the loads and gauges of now
+    bool host_is_stale = false;              // its state is newer than the one here
+    bool energies_missing = false;           // those of its state are asked for and not computed yet
+    std::vector<Segment> hosted;             // what this processor moves
 
     OwnDevice() = default;
     OwnDevice(const OwnDevice& other) {
-      if (other.ahead || other.energies_missing) throw std::logic_error("a simulation is copied that is on a device");
+      if (other.host_is_stale || other.energies_missing)
+        throw std::logic_error("a simulation is copied that is on a device");
     }
     OwnDevice(OwnDevice&&) = default;
     OwnDevice& operator=(OwnDevice&&) = default;

@@ -21,8 +21,8 @@ std::vector<TermKind>& all_kinds_of_terms() {
 
 }  // namespace
 
-TermMemory ForceTerm::halved(const TermMemory& coarse, const std::vector<int>& heirs) const {
-  TermMemory fine = coarse;
+TermState ForceTerm::halved(const TermState& coarse, const std::vector<int>& heirs) const {
+  TermState fine = coarse;
   for (TermRecord& record : fine) record.element = heirs[static_cast<std::size_t>(record.element)];
   return fine;
 }

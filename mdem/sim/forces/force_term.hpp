@@ -47,9 +47,9 @@ struct TermSum {
   double power = 0;   // work per time of the term's dissipative forces, eV/ps
 };
 
-// Energy that a memory has lost as it moved on (eV), events that are counted: slips begin, tethers break; and what
-// has begun to act: links form.
-struct Happened {
+// Result of one update of the internal state: dissipated energy (eV), number of events (slips begun, tethers
+// broken), number of bonds formed.
+struct StateUpdate {
   double lost = 0;
   long events = 0, begun = 0;
 };
@@ -83,11 +83,11 @@ struct TermRecord {
   int element = 0;
   std::vector<double> numbers;
 };
-using TermMemory = std::vector<TermRecord>;
+using TermState = std::vector<TermRecord>;
 // That of a term of this name.
 struct NamedMemory {
   std::string term;
-  TermMemory records;
+  TermState records;
 };
 
 // Something that happened in the course of a run: when (ps), what, between which elements of the scene, where (nm).
@@ -110,9 +110,9 @@ class ForceTerm {
   virtual void prepare(const ListedScene&) {}
   // Collects here whatever depends on elements of other processes.
   virtual void gather(const State&) {}
-  // Moves the memory on to the present positions; `dt` (ps) has passed since the last call, none in a relaxation.
-  // The energy that is lost thereby counts as dissipated.
-  virtual Happened advance(double /*dt*/, const State&) { return {}; }
+  // Updates the internal state (history variables) to the current positions. `dt`: time since the last call (ps),
+  // zero in a relaxation. The energy that is lost counts as dissipated.
+  virtual StateUpdate advance(double /*dt*/, const State&) { return {}; }
 
   // Adds the forces on elements of a part, which are own ones. A force between two elements is computed for each of
   // them; one of them has its energy.
@@ -126,8 +126,8 @@ class ForceTerm {
   virtual TermSum add_pairs(const State&, std::size_t /*chunk*/, const PairBuffer&) { return {}; }
 
   // Whether it acts in the kick: on the sum of all other forces, the loads and constraints of which no other term
-  // knows. It then adds, to rows of zeros, the forces on the elements of a part; `total` has all elements. What they
-  // do in the kick counts as dissipated.
+  // knows. It then adds, to rows of zeros, the forces on the elements of a part; `total` has all elements. What
+  // they do in the kick counts as dissipated.
   virtual bool acts_in_kick() const { return false; }
   virtual void add_in_kick(const State&, const ForceRows& /*total*/, const Segment& /*part*/,
                            const ForceRows& /*out*/) const {}
@@ -139,18 +139,18 @@ class ForceTerm {
   // Whether there are any.
   virtual bool remembers() const { return false; }
   // The records of own elements, and back: those of all processes.
-  virtual TermMemory memory() const { return {}; }
+  virtual TermState memory() const { return {}; }
   // Throws std::runtime_error where the term cannot have had this memory.
-  virtual void remember(const TermMemory&) {}
+  virtual void set_memory(const TermState&) {}
   // The memory of another scene, from whose end state this one begins at time zero: what has happened there is no
   // event here. Throws likewise.
-  virtual void begin_with(const TermMemory& memory) { remember(memory); }
-  // The memory where elements are half as long: what belongs to the element e goes to heirs[e], its first half or the
-  // one in its place (sim/dynamics/refine.hpp).
-  virtual TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const;
+  virtual void begin_with(const TermState& memory) { set_memory(memory); }
+  // The memory where elements are half as long: what belongs to the element e goes to heirs[e], its first half or
+  // the one in its place (sim/dynamics/refine.hpp).
+  virtual TermState halved(const TermState& coarse, const std::vector<int>& heirs) const;
 
   // Bonds that hold nothing any more, as flags of the elements before them; null: all hold. One term of a scene can
-  // have some. Only advance() and remember() change them.
+  // have some. Only advance() and set_memory() change them.
   virtual const std::vector<char>* broken_bonds() const { return nullptr; }
 
   // What acts from the start on, for the account.
@@ -159,8 +159,9 @@ class ForceTerm {
   // checkpoint knows all of it.
   virtual std::vector<TermEvent> events() const { return {}; }
 
-  // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces, energies
-  // and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and one buffer.
+  // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces,
+  // energies and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and
+  // one buffer.
   virtual bool add_reference(const Topology&, const Interaction&, const State&, Forces&) const { return false; }
 
   // The size of its lists, which an evaluation reads.
@@ -191,7 +192,8 @@ struct TermReading {
   double energy = 0;
   TermAccount account;
 };
-std::map<std::string, TermReading> term_readings(const Interaction& interaction, const std::vector<double>& energies,
+std::map<std::string, TermReading> term_readings(const Interaction& interaction,
+                                                 const std::vector<double>& energies,
                                                  const std::vector<TermAccount>& accounts);
 
 // Calls work(i, j) for all pairs i < j that are not excluded as near along one tube, in rising order.

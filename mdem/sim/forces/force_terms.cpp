@@ -25,10 +25,11 @@ bool same_terms(const Damping& a, const Damping& b) {
 
 }  // namespace
 
-std::vector<double> numbers_of(const TermMemories& memories) {
+std::vector<double> numbers_of(const TermStates& memories) {
   std::vector<double> numbers;
   const auto add = [&](std::size_t term, int element, const std::vector<double>& of) {
-    numbers.insert(numbers.end(), {static_cast<double>(term), static_cast<double>(element), static_cast<double>(of.size())});
+    numbers.insert(numbers.end(),
+                   {static_cast<double>(term), static_cast<double>(element), static_cast<double>(of.size())});
     numbers.insert(numbers.end(), of.begin(), of.end());
   };
   for (std::size_t term = 0; term < memories.records.size(); ++term) {
@@ -40,11 +41,12 @@ std::vector<double> numbers_of(const TermMemories& memories) {
   return numbers;
 }
 
-TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
-  TermMemories all{std::vector<TermMemory>(terms), std::vector<TermAccount>(terms)};
+TermStates memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
+  TermStates all{std::vector<TermState>(terms), std::vector<TermAccount>(terms)};
   const auto fail = [] { throw std::runtime_error("the memory of the force terms is damaged"); };
   const auto whole = [&](std::size_t at, double end) {
-    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at])) fail();
+    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at]))
+      fail();
     return static_cast<std::size_t>(numbers[at]);
   };
   for (std::size_t at = 0; at < numbers.size();) {
@@ -63,7 +65,7 @@ TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, 
     }
     at += 3 + count;
   }
-  for (TermMemory& records : all.records)
+  for (TermState& records : all.records)
     std::stable_sort(records.begin(), records.end(),
                      [](const TermRecord& a, const TermRecord& b) { return a.element < b.element; });
   return all;
@@ -102,7 +104,7 @@ void ForceTerms::begin(const State& state, int parts) {
 double ForceTerms::advance(double dt, const State& state) {
   double lost = 0;
   for (Working& w : terms_) {
-    const Happened now = w.term->advance(dt, state);
+    const StateUpdate now = w.term->advance(dt, state);
     w.account.add({now.lost, 0, static_cast<double>(now.events), static_cast<double>(now.begun)});
     lost += now.lost;
   }
@@ -183,7 +185,7 @@ std::vector<TermEvent> ForceTerms::events() const {
 }
 
 std::vector<double> ForceTerms::memory() const {
-  TermMemories all;
+  TermStates all;
   for (const Working& w : terms_) {
     all.records.push_back(w.term->memory());
     all.accounts.push_back(w.account);
@@ -198,17 +200,17 @@ std::vector<NamedMemory> ForceTerms::memories() const {
   return all;
 }
 
-void ForceTerms::remember(const std::vector<double>& numbers, int elements, bool with_accounts) {
-  const TermMemories all = memories_of(numbers, terms_.size(), elements);
+void ForceTerms::set_memory(const std::vector<double>& numbers, int elements, bool with_accounts) {
+  const TermStates all = memories_of(numbers, terms_.size(), elements);
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    terms_[k].term->remember(all.records[k]);
+    terms_[k].term->set_memory(all.records[k]);
     terms_[k].account = with_accounts ? all.accounts[k] : TermAccount();
   }
   stamp_ = 0;
 }
 
 std::vector<double> ForceTerms::halved_memory(const std::vector<int>& heirs) const {
-  TermMemories all;
+  TermStates all;
   for (const Working& w : terms_) {
     all.records.push_back(w.term->halved(w.term->memory(), heirs));
     all.accounts.push_back(w.account);

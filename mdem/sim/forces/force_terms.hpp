@@ -1,5 +1,5 @@
-// The terms that one engine of forces works with (sim/forces/force_term.hpp): copies of those of an interaction, with
-// memories of their own, and those that its dampings stand for.
+// The terms that one engine of forces works with (sim/forces/force_term.hpp): copies of those of an interaction,
+// with memories of their own, and those that its dampings stand for.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,18 @@
 namespace ropewalk {
 
 // Of several terms.
-struct TermMemories {
-  std::vector<TermMemory> records;
+struct TermStates {
+  std::vector<TermState> records;
   std::vector<TermAccount> accounts;
 };
 
-// Memories as one list of numbers: for each record the number of its term, its element, how many numbers follow, and
-// these; an account stands as a record of the element -1. Lists of several processes may stand behind one another.
-std::vector<double> numbers_of(const TermMemories& memories);
-// Records in the order of their elements, accounts added up. Throws std::runtime_error if these are not the memories
-// of `terms` terms in a scene of `elements` elements.
-TermMemories memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
+// Memories as one list of numbers: for each record the number of its term, its element, how many numbers follow,
+// and these; an account stands as a record of the element -1. Lists of several processes may stand behind one
+// another.
+std::vector<double> numbers_of(const TermStates& memories);
+// Records in the order of their elements, accounts added up. Throws std::runtime_error if these are not the
+// memories of `terms` terms in a scene of `elements` elements.
+TermStates memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
 
 class ForceTerms : private PairWork {
  public:
@@ -57,7 +58,7 @@ class ForceTerms : private PairWork {
   // The memories of the interaction's own terms, in their order.
   std::vector<NamedMemory> memories() const;
   // prepare() then finds all lists new. `with_accounts`: false in all processes but one. Throws std::runtime_error.
-  void remember(const std::vector<double>& numbers, int elements, bool with_accounts = true);
+  void set_memory(const std::vector<double>& numbers, int elements, bool with_accounts = true);
   std::vector<double> halved_memory(const std::vector<int>& heirs) const;
   std::size_t bytes() const;
 

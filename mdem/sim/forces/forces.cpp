@@ -32,10 +32,10 @@ std::size_t ForceEngine::bytes() const {
   return 3 * axis_.size() * sizeof(double) + (contact_ ? contact_->bytes() : 0) + terms_.bytes();
 }
 
-void ForceEngine::remember(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                           bool with_accounts) {
+void ForceEngine::set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
+                             bool with_accounts) {
   use_terms(interaction);
-  terms_.remember(memory, elements, with_accounts);
+  terms_.set_memory(memory, elements, with_accounts);
 }
 
 // A contact engine has listed the pairs of the terms that were there before.
@@ -109,8 +109,8 @@ void ForceEngine::compute(const Topology& topology, const Interaction& interacti
   }
   BondSum all;
   for (const BondSum& sum : sums_) add(sum, all);
-  out.energy = {all.energy.stretch, all.energy.shear, all.energy.bend, all.energy.twist,
-                contact ? contact->energy() : 0, 0};
+  out.energy = {
+      all.energy.stretch, all.energy.shear, all.energy.bend, all.energy.twist, contact ? contact->energy() : 0, 0};
   out.damping_power = all.power;
   if (options.parts != Parts::bonds) terms_.sum_up(out, options.passed.value_or(0));
   out.slipping_bond = all.slipping;

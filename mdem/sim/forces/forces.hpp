@@ -22,8 +22,8 @@ struct Forces {
   Energies energy;
   std::vector<double> term_energy;  // eV, of each of Interaction::terms
   double lost = 0;                  // eV, by terms whose memory has moved on
-  double damping_power = 0;  // work per time of the damping forces, never positive, eV/ps
-  int slipping_bond = -1;    // first element of a bond twisted by 90 degrees or more, -1: none
+  double damping_power = 0;         // work per time of the damping forces, never positive, eV/ps
+  int slipping_bond = -1;           // first element of a bond twisted by 90 degrees or more, -1: none
 
   explicit Forces(std::size_t n = 0) : force(n), torque(n) {}
   void resize(std::size_t n) { force.resize(n), torque.resize(n); }
@@ -107,8 +107,8 @@ class ForceEngine {
   // Goes on with the memories of another engine, for the same list.
   void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
   // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.
-  void remember(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                bool with_accounts = true);
+  void set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
+                  bool with_accounts = true);
   // Makes the terms ready for a list that a state with this memory has had before.
   void prepare_again(const Topology& topology, const NeighbourList& list, const State& state) {
     terms_.prepare(topology, list, state, true);

@@ -177,7 +177,7 @@ TEST(Tether, IsCarriedOverWhereElementsAreSplit) {
     Prepared q = prepare(finer);
     q.state = halved(p.topology, s.state(), splitting_of(coarse));
     Simulation split = start(finer, q);
-    split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
+    split.set_memory(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
     const std::vector<double>&before = s.forces().term_energy, &after = split.forces().term_energy;
     ASSERT_EQ(after.size(), 2u);
     for (std::size_t t = 0; t < 2; ++t) EXPECT_NEAR(after[t], before[t], 1e-9) << steps;

@@ -107,7 +107,7 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // In blocks of contacts, whose sums are added up in their order whatever the threads.
-  Happened advance(double, const State& state) override {
+  StateUpdate advance(double, const State& state) override {
     std::vector<Advanced> advanced((contacts_.size() + block - 1) / block);
     for_each(advanced.size(), contacts_.size() > parallel_from, [&](std::size_t b) {
       const std::size_t begin = b * block, end = std::min(begin + block, contacts_.size());
@@ -116,12 +116,12 @@ class DryFrictionTerm : public ForceTerm {
     });
     Advanced all;
     for (const Advanced& of : advanced) {
-      all.happened.lost += of.happened.lost;
-      all.happened.events += of.happened.events;
+      all.update.lost += of.update.lost;
+      all.update.events += of.update.events;
       all.others = all.others || of.others;
     }
     if (all.others) index();
-    return all.happened;
+    return all.update;
   }
 
   TermSum add(const State&, const Segment& part, const ForceRows& out) const override {
@@ -150,8 +150,8 @@ class DryFrictionTerm : public ForceTerm {
   double stiffness() const override { return stiffness_; }
 
   bool remembers() const override { return true; }
-  TermMemory memory() const override {
-    TermMemory out;
+  TermState memory() const override {
+    TermState out;
     for (const Contact& c : contacts_)
       if (!c.over && element(c.a).own)
         out.push_back({element(c.a).number,
@@ -160,7 +160,7 @@ class DryFrictionTerm : public ForceTerm {
     return out;
   }
 
-  void remember(const TermMemory& memory) override {
+  void set_memory(const TermState& memory) override {
     for (const TermRecord& r : memory) {
       const std::vector<double>& x = r.numbers;
       if (x.size() != 9 || !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }) ||
@@ -173,9 +173,9 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // Both elements in the place of one have its slips, and find out anew which elements they face.
-  TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const override {
+  TermState halved(const TermState& coarse, const std::vector<int>& heirs) const override {
     const bool last_has_two = heirs.back() == 2 * (static_cast<int>(heirs.size()) - 1) && tube_begin_.size() > 2;
-    TermMemory fine;
+    TermState fine;
     for (const TermRecord& r : coarse) {
       const auto e = static_cast<std::size_t>(r.element);
       TermRecord heir{heirs[e], r.numbers};
@@ -195,7 +195,7 @@ class DryFrictionTerm : public ForceTerm {
  private:
   static constexpr std::size_t block = 512;
   struct Advanced {
-    Happened happened;
+    StateUpdate update;
     bool others = false;  // elements of contacts have changed
   };
   // What a contact has to know of an element, since a scene may move in memory.
@@ -263,7 +263,7 @@ class DryFrictionTerm : public ForceTerm {
 
   Pair pair_of(int first, int second, const State& state) const {
     const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-    const Frame&at_a = frames_[a], &at_b = frames_[b];
+    const Frame &at_a = frames_[a], &at_b = frames_[b];
     Pair p;
     p.w = state.position[b] - state.position[a];
     p.cosine = at_a.t.dot(at_b.t);
@@ -365,8 +365,8 @@ class DryFrictionTerm : public ForceTerm {
       now = now_of(c, state);
     }
     if (!element(c.a).own) return;
-    all.happened.lost += lost;
-    all.happened.events += begins_to_slide && is_counted(c);
+    all.update.lost += lost;
+    all.update.events += begins_to_slide && is_counted(c);
   }
 
   // To the element of b's tube that a faces now. The slips stay. False: there is none.
@@ -469,11 +469,11 @@ class DryFrictionTerm : public ForceTerm {
   std::vector<int> tube_begin_;  // of the scene
   double stiffness_ = 0;
   std::vector<Element> elements_;
-  TermMemory remembered_;  // until the next list
+  TermState remembered_;  // until the next list
   std::vector<Contact> contacts_;
   std::vector<Frame> frames_;  // of the elements, in the state of the evaluation
-  std::vector<Now> now_;               // of the contacts, likewise
-  Rows of_first_, of_second_;          // contacts by a and by b
+  std::vector<Now> now_;       // of the contacts, likewise
+  Rows of_first_, of_second_;  // contacts by a and by b
 };
 
 }  // namespace

@@ -198,10 +198,10 @@ class LinkTerm : public ForceTerm {
     });
   }
 
-  Happened advance(double, const State& state) override {
+  StateUpdate advance(double, const State& state) override {
     if (waits_ && state.time >= law_.placed_at) place_all(state);
     if (law_.forming > 0 && state.time - last_formed_ >= forming_interval) form(state);
-    Happened all{-given_, 0, begun_};
+    StateUpdate all{-given_, 0, begun_};
     given_ = 0;
     begun_ = 0;
     // Whether a link breaks follows from itself and not from its image, which stands behind it.
@@ -250,8 +250,8 @@ class LinkTerm : public ForceTerm {
   long begun_at_start() const override { return static_cast<long>(links_.size()); }
 
   bool remembers() const override { return true; }
-  TermMemory memory() const override {
-    TermMemory out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0}}};
+  TermState memory() const override {
+    TermState out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0}}};
     for (const Link& link : links_) {
       TermRecord record{link.at.a, {static_cast<double>(link.at.b)}};
       const auto add = [&](const Vector3& v) {
@@ -266,7 +266,7 @@ class LinkTerm : public ForceTerm {
     return out;
   }
 
-  void remember(const TermMemory& memory) override {
+  void set_memory(const TermState& memory) override {
     if (memory.empty()) return;  // nothing has happened yet
     const auto fail = [] { throw std::runtime_error("the memory of links is damaged"); };
     links_.clear();
@@ -299,8 +299,8 @@ class LinkTerm : public ForceTerm {
   }
 
   // Whole links are there at the start; those that have broken are forgotten.
-  void begin_with(const TermMemory& memory) override {
-    remember(memory);
+  void begin_with(const TermState& memory) override {
+    set_memory(memory);
     links_.erase(std::remove_if(links_.begin(), links_.end(), [](const Link& link) { return link.broke != never; }),
                  links_.end());
     std::vector<LinkPlace> places;
@@ -316,7 +316,7 @@ class LinkTerm : public ForceTerm {
 
   // Where all elements are cut in two, each point goes to the half that it stands beside. Where the shorter
   // elements stand in the old places, with new ones between them, it stays with the old one.
-  TermMemory halved(const TermMemory& coarse, const std::vector<int>& heirs) const override {
+  TermState halved(const TermState& coarse, const std::vector<int>& heirs) const override {
     const bool cut = scene_.tube_begin.size() > 2 &&
                      heirs[static_cast<std::size_t>(scene_.tube_begin[1])] == 2 * scene_.tube_begin[1];
     const auto move = [&](int element, double* p) {
@@ -326,7 +326,7 @@ class LinkTerm : public ForceTerm {
       p[2] += (second ? -0.25 : 0.25) * element_length_;
       return heir + second;
     };
-    TermMemory fine;
+    TermState fine;
     for (const TermRecord& r : coarse) {
       TermRecord heir = r;
       if (r.numbers.size() == numbers_of_link) {

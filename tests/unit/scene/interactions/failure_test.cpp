@@ -52,8 +52,8 @@ Simulation begun(Scene scene) {
 double broken(const Simulation& s) { return s.term_accounts().at(0).events; }
 
 TEST(Failure, BreaksATubeAtItsWeakestBondOnce) {
-  // The pull adds a strain of 0.0015 while the break unloads the tube, and the second weakest bond bears 0.0018 more
-  // than the weakest. Without this damping the recoil breaks the tube in more places.
+  // The pull adds a strain of 0.0015 while the break unloads the tube, and the second weakest bond bears 0.0018
+  // more than the weakest. Without this damping the recoil breaks the tube in more places.
   Scene scene = chain("[failure]\nstrain = 0.03\nstrain_deviation = 0.002\nseed = 12\n",
                       "[damping]\nbond_damping_per_ps = 40\n");
   MovingScene m(scene);
@@ -107,7 +107,7 @@ TEST(Failure, BrokenBondsActAsEndsOfTubes) {
   NeighbourList list(with, 0.1);
   list.build(s.topology(), s.state());
   ForceEngine failing;
-  failing.remember(with, s.memory(), s.topology().elements());
+  failing.set_memory(with, s.memory(), s.topology().elements());
   Forces broken_bonds(s.state().size());
   failing.compute(s.topology(), with, list, s.state(), broken_bonds);
   engine.compute(cut, bare, none, s.state(), plain, {Parts::bonds});

@@ -129,7 +129,8 @@ TEST(DryFriction, ACorrugationComesBackInEachPeriod) {
   const double radius = spins.p.topology.types[0].radius, most = 60 * pN * 6 * spins.length() * radius;
   for (double turn = 0.02; turn < 2; turn += 0.02)
     EXPECT_NEAR(on_first_tube(spins, spins.at(spins.moved(0, turn), true).torque).z(),
-                -most * std::sin(turn * radius / delta), 1e-5 * most) << turn;
+                -most * std::sin(turn * radius / delta), 1e-5 * most)
+        << turn;
 }
 
 TEST(DryFriction, TubesThatRideOverACorrugationLoseNothing) {
@@ -268,8 +269,9 @@ TEST(DryFriction, TheAccountOfEnergyStaysClosedWhereTubesSlide) {
 
 // Below the strength nothing slips.
 TEST(DryFriction, HeldTubesLoseNothing) {
-  Scene scene = rope(axial + "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.05]\n",
-                     "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Scene scene =
+      rope(axial + "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.05]\n",
+           "duration_ps = 20\ntime_step_fs = 2\n", cold);
   Simulation s = start(scene, prepare(scene));
   s.steps(500);
   EXPECT_GT(s.forces().term_energy.at(0), 1e-3);
@@ -278,16 +280,21 @@ TEST(DryFriction, HeldTubesLoseNothing) {
   EXPECT_EQ(of_friction.events, 0);
 }
 
-// Shear lag: a tube that is pulled by one end slides as far as its tension N outweighs the friction q per length of its six
-// neighbours. With the elastic layer l = sqrt(EA delta/q) before the front, at the depth d behind an end that has moved by u,
+// Shear lag: a tube that is pulled by one end slides as far as its tension N outweighs the friction q per length of
+// its six neighbours. With the elastic layer l = sqrt(EA delta/q) before the front, at the depth d behind an end
+// that has moved by u,
 //   N = sqrt(2 EA q (u - delta/2)) - q d.
 TEST(DryFriction, ATubePulledByOneEndSlidesAsFarAsItsTensionReaches) {
   constexpr double u = 0.2, delta = 0.005;
   Scene scene = scene_of_text(
-      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 69\n[bond]\nlaw = "
-      "\"harmonic\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 2\n[[friction]]\nstrength_pN_per_nm = "
-      "100\nelastic_slip_nm = 0.005\n[[load]]\nkind = \"fix\"\ntubes = [1, 2, 3, 4, 5, 6]\nelements = \"all\"\n[[grip]]\ntubes = "
-      "[0]\nend = \"upper\"\nz = { displacement_nm = [[0, 0], [60, 0.2]] }\nsmooth_ps = 5\n[run]\nduration_ps = 75\n",
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
+      "69\n[bond]\nlaw = "
+      "\"harmonic\"\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = "
+      "2\n[[friction]]\nstrength_pN_per_nm = "
+      "100\nelastic_slip_nm = 0.005\n[[load]]\nkind = \"fix\"\ntubes = [1, 2, 3, 4, 5, 6]\nelements = "
+      "\"all\"\n[[grip]]\ntubes = "
+      "[0]\nend = \"upper\"\nz = { displacement_nm = [[0, 0], [60, 0.2]] }\nsmooth_ps = 5\n[run]\nduration_ps = "
+      "75\n",
       "pull.toml");
   const Prepared p = prepare(scene);
   Simulation s = start(scene, p);
@@ -299,7 +306,9 @@ TEST(DryFriction, ATubePulledByOneEndSlidesAsFarAsItsTensionReaches) {
     const auto i = static_cast<std::size_t>(last - bonds);
     return EA * ((s.state().position[i] - s.state().position[i - 1]).norm() / type.element_length - 1);
   };
-  EXPECT_NEAR(s.state().position[static_cast<std::size_t>(last)].z() - p.state.position[static_cast<std::size_t>(last)].z(), u, 1e-6);
+  EXPECT_NEAR(
+      s.state().position[static_cast<std::size_t>(last)].z() - p.state.position[static_cast<std::size_t>(last)].z(),
+      u, 1e-6);
   EXPECT_GT(front, 25);
   for (const int bonds : {3, 8, 13, 18}) {
     const double depth = bonds * type.element_length;
@@ -323,9 +332,11 @@ TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
 }
 
 TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
-  Scene scene = rope("[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\nend_strength_pN = 5\nelastic_slip_nm = 0.01\n" + GetParam() +
-                         "drag_eV_ps_per_nm3 = 0.05\n" + pulled, "duration_ps = 20\ntime_step_fs = 20\n",
-                     "[start]\ntemperature_K = 300\nmay_cool = true\n");
+  Scene scene = rope(
+      "[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\nend_strength_pN = 5\nelastic_slip_nm = "
+      "0.01\n" +
+          GetParam() + "drag_eV_ps_per_nm3 = 0.05\n" + pulled,
+      "duration_ps = 20\ntime_step_fs = 20\n", "[start]\ntemperature_K = 300\nmay_cool = true\n");
   const auto begun = [&] { return start(scene, prepare(scene)); };
   omp_set_num_threads(1);
   Simulation whole = begun();
@@ -353,7 +364,8 @@ TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
 }
 
 TEST(DryFriction, IsCarriedOverWhereElementsAreSplit) {
-  Scene coarse = rope("[[friction]]\nstrength_pN_per_nm = 20\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
+  Scene coarse =
+      rope("[[friction]]\nstrength_pN_per_nm = 20\n" + pulled, "duration_ps = 20\ntime_step_fs = 2\n", cold);
   const Prepared p = prepare(coarse);
   Simulation s = start(coarse, p);
   s.steps(1000);
@@ -361,9 +373,10 @@ TEST(DryFriction, IsCarriedOverWhereElementsAreSplit) {
   Prepared q = prepare(finer);
   q.state = halved(p.topology, s.state(), splitting_of(coarse));
   Simulation split = start(finer, q);
-  split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
+  split.set_memory(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
   EXPECT_GT(s.forces().term_energy[0], 0.05);
-  EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.1) << "the overlap counts in whole elements";
+  EXPECT_NEAR(split.forces().term_energy[0] / s.forces().term_energy[0], 1, 0.1)
+      << "the overlap counts in whole elements";
   EXPECT_GT(s.term_accounts()[0].lost, 0);
   EXPECT_EQ(split.term_accounts()[0].lost, s.term_accounts()[0].lost);
 }

@@ -299,7 +299,7 @@ TEST(Links, KeepTheirEnergyWhereElementsAreSplit) {
     Prepared q = prepare(finer);
     q.state = halved(p.topology, s.state(), splitting_of(coarse));
     Simulation split = start(finer, q);
-    split.remember(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
+    split.set_memory(s.halved_memory(heirs(p.topology, splitting_of(coarse))));
     EXPECT_GT(s.forces().energy.terms, 0.1);
     EXPECT_NEAR(split.forces().energy.terms, s.forces().energy.terms, 1e-9) << grips;
   }

@@ -1,5 +1,5 @@
-// The way of a run back to its last good state, where the motion blows up or the account of energy does not close.
-// Steps are shorter from there on (run/step_control.hpp).
+// Rollback: restores the last good snapshot of a run after a blow-up or an energy error. Steps are shorter from
+// there on (run/step_control.hpp).
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace ropewalk {
 
-class WayBack {
+class Rollback {
  public:
-  WayBack(MovingScene& moving, RunFiles& files, LimitGuard& limits, StopWatch& stops, Checkpoints& checkpoints,
-          RunListener& listener)
+  Rollback(MovingScene& moving, RunFiles& files, LimitGuard& limits, StopWatch& stops, Checkpoints& checkpoints,
+           RunListener& listener)
       : moving_(moving),
         files_(files),
         limits_(limits),
@@ -21,14 +21,14 @@ class WayBack {
         listener_(listener) {}
 
   // The present state is good.
-  void set_mark();
+  void take_snapshot();
   // The state that was good when the run was stopped. The simulation stands there afterwards.
-  void restore(const RunCheckpoint& mark);
+  void restore(const RunCheckpoint& snapshot);
   // A model that gains energy has no account to close.
   bool is_sound() const;
   // The next steps are shorter, or looked at more closely if they have not been. False where steps are as short as
   // they get: the failure stands.
-  bool go_back(const std::string& why, bool looked_closely);
+  bool roll_back(const std::string& why, bool looked_closely);
 
  private:
   MovingScene& moving_;
@@ -37,7 +37,7 @@ class WayBack {
   StopWatch& stops_;
   Checkpoints& checkpoints_;
   RunListener& listener_;
-  EnergyMark energy_;  // of the mark
+  EnergyMark energy_;  // at the snapshot
 };
 
 }  // namespace ropewalk

@@ -1,38 +1,38 @@
-#include "run/way_back.hpp"
+#include "run/rollback.hpp"
 
 #include <fmt/format.h>
 
 namespace ropewalk {
 
-void WayBack::set_mark() {
-  checkpoints_.set_mark();
+void Rollback::take_snapshot() {
+  checkpoints_.take_snapshot();
   energy_ = energy_mark(moving_.simulation);
 }
 
-void WayBack::restore(const RunCheckpoint& mark) {
-  moving_.simulation.restore(mark.simulation);
+void Rollback::restore(const RunCheckpoint& snapshot) {
+  moving_.simulation.restore(snapshot.simulation);
   energy_ = energy_mark(moving_.simulation);
 }
 
-bool WayBack::is_sound() const {
+bool Rollback::is_sound() const {
   return moving_.scene.contact.legacy_torque || account_closes(energy_, moving_.simulation);
 }
 
-bool WayBack::go_back(const std::string& why, bool looked_closely) {
+bool Rollback::roll_back(const std::string& why, bool looked_closely) {
   Simulation& simulation = moving_.simulation;
   const int divided = simulation.divided();
   const double time = simulation.time();
   const std::int64_t step = simulation.step_count();
   if (divided >= StepControl::most) return false;
-  const RunCheckpoint& c = *checkpoints_.mark();
+  const RunCheckpoint& c = *checkpoints_.snapshot();
   simulation.restore(c.simulation);
   if (looked_closely)
     moving_.control.shorten(divided, simulation);
   else
     moving_.control.close_until = step;
-  limits_.go_back_to(c.limits, simulation.step_count());
+  limits_.roll_back_to(c.limits, simulation.step_count());
   stops_.cut(simulation.step_count());
-  checkpoints_.save_mark_over_later();
+  checkpoints_.save_snapshot_over_later();
   files_.cut(c.log, c.frames);
   if (!looked_closely) return true;
   // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.

@@ -1,5 +1,5 @@
-// The way back to the last good state, and the shorter steps from there on: run/way_back.hpp, run/step_control.hpp.
-#include "run/way_back.hpp"
+// The way back to the last good state, and the shorter steps from there on: run/rollback.hpp, run/step_control.hpp.
+#include "run/rollback.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ std::string collision() {
   return state;
 }
 
-TEST(WayBack, ADeviceDividesTheStepsThatTheProcessorDivides) {
+TEST(Rollback, ADeviceDividesTheStepsThatTheProcessorDivides) {
   const fs::path dir = fs::temp_directory_path() / fmt::format("ropewalk-way-back-{}", getpid());
   fs::create_directories(dir);
   write_file_atomically((dir / "pair.csv").string(), collision());
