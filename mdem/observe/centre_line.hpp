@@ -22,7 +22,7 @@ bool run_the_same_way(const Topology& topology, const State& state);
 
 // Empty where the tubes have no common length.
 CentreLine centre_line(const Topology& topology, const State& state);
-// That of each plied rope (Topology::rope_begin), whose strands are the tubes of `topology`.
+// That of each plied rope (TubeGroups::rope_begin), whose strands are the tubes of `topology`.
 std::vector<CentreLine> rope_lines(const Topology& topology, const State& state);
 
 // Direction of a tube at one of its elements from the positions of the adjacent ones; the element's own axis

@@ -241,9 +241,9 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   const double free = reference.ends_apart - within(topology, reference.ends[lower_end]) -
                       within(topology, reference.ends[upper_end]);
   out.strain = free > 0 ? (out.ends_apart - reference.ends_apart) / free : 0;
-  if (topology.images > 0) {
+  if (topology.groups.images > 0) {
     out.ends_apart = slice_length(topology, state);
-    out.strain = out.ends_apart / topology.period - 1;
+    out.strain = out.ends_apart / topology.groups.period - 1;
   }
   for (int t = 0; t < topology.tubes(); ++t) {
     const double tension = mean_of_middle(tensions(topology, state, t));

@@ -2,11 +2,11 @@
 // frames gives the numbers that the run logged.
 //
 // Centre line C(s): mean position of the elements of equal index s over all strands. A strand is a tube, or a row
-// of tubes in line (Topology::strand_begin); sections follow the material. Strands of unequal numbers of elements
+// of tubes in line (TubeGroups::strand_begin); sections follow the material. Strands of unequal numbers of elements
 // have no centre line: only the quantities of single tubes are then given, physical twist and the counts of bonds.
 // Its tangent is the local rope axis. Twists and windings are positive where they are right-handed.
 //
-// Ropes that are plied (Topology::rope_begin) have a centre line each, and C is the axis of them all. Twist angle
+// Ropes that are plied (TubeGroups::rope_begin) have a centre line each, and C is the axis of them all. Twist angle
 // beta, neighbours, Q and voids are those of each rope by itself: as if it stood alone.
 #pragma once
 

@@ -65,7 +65,7 @@ Model finer_model(const Model& planned, bool half) {
   for (int t = 0; t < planned.topology.tubes(); ++t)
     m.topology.add_tube(half ? 2 * planned.topology.length_of(t) - 1 : planned.topology.length_of(t),
                         planned.topology.tube_type[t]);
-  m.topology.rope_begin = planned.topology.rope_begin;
+  m.topology.groups.rope_begin = planned.topology.groups.rope_begin;
   set_collapse(m.scene, m.topology);
   m.interaction = interaction_of(m.scene);
   add_terms(m.scene, m.topology, m.start, m.interaction);

@@ -140,7 +140,7 @@ void add_end_motion(const EndDrives& drives, const Prepared& p, SceneFeatures& f
   add_course(pulled, f);
   f.turned = turned.largest();
   f.turning = turned.fastest();
-  const double length = p.topology.images > 0 ? p.topology.period : f.length;
+  const double length = p.topology.groups.images > 0 ? p.topology.groups.period : f.length;
   if (f.turned > 0) add_rope_twist(p, f.turned / length, f);
   if (!is_kept_between(drives, LoadEffect::z)) return;
   // Pressed ends strain a rope until it bends aside. A solid column between two clamps buckles at this strain
@@ -155,7 +155,7 @@ void add_end_motion(const EndDrives& drives, const Prepared& p, SceneFeatures& f
 // What a turned rope demands whose length is held, and the bending of tilted tubes where an end keeps them
 // straight, over the length sqrt(EI/T), T the tension of a tube.
 void add_demands_of_turn(const EndDrives& drives, const Prepared& p, SceneFeatures& f) {
-  if (f.tubes < 2 || !(f.turn > 0) || p.topology.images > 0) return;
+  if (f.tubes < 2 || !(f.turn > 0) || p.topology.groups.images > 0) return;
   const BondStiffness& k = p.topology.types[0].bond;
   const double slope = rope_radius(p) * f.turn;
   double tension = f.tension;

@@ -98,7 +98,7 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
 std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
   if (!f.turned_between || !(f.turning > 0)) return std::nullopt;
-  const double length = p.topology.images > 0 ? p.topology.period : f.length;
+  const double length = p.topology.groups.images > 0 ? p.topology.groups.period : f.length;
   double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
@@ -115,7 +115,7 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
   const double phi = f.turned / length, torque = 0.5 * twist * phi + 0.25 * cubic * phi * phi * phi;
   // The speed of rotation rises along the rope from zero at the held end to the whole rate at the turned one.
   const double drag = scene.bath() ? scene.bath()->coupling * inertia * 0.5 * f.turning * length : 0;
-  return QuasiStatic{p.topology.images > 0, length * std::sqrt(inertia / twist), f.turned / f.turning,
+  return QuasiStatic{p.topology.groups.images > 0, length * std::sqrt(inertia / twist), f.turned / f.turning,
                      drag / torque, 0.5 * f.turning * std::sqrt(twist * inertia) / torque};
 }
 

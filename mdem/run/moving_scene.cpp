@@ -10,7 +10,7 @@ namespace ropewalk {
 
 std::optional<Energies> energies_of_period(const Simulation& simulation) {
   const Topology& topology = simulation.topology();
-  if (topology.images == 0) return std::nullopt;
+  if (topology.groups.images == 0) return std::nullopt;
   const State& s = simulation.state();
   const Topology now = simulation.tubes_now();
   const std::vector<double> contacts = contact_energies(topology, simulation.interaction(), s);

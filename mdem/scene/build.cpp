@@ -30,7 +30,7 @@ std::vector<int> one_tube(const Topology& topology) {
     while (first[static_cast<std::size_t>(t)] != t) t = first[static_cast<std::size_t>(t)];
     return t;
   };
-  for (int e = 0; topology.images > 0 && e < topology.elements(); ++e) {
+  for (int e = 0; topology.groups.images > 0 && e < topology.elements(); ++e) {
     const int a = root(topology.tube_of(e)), b = root(topology.tube_of(topology.original_of(e)));
     first[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
@@ -197,9 +197,9 @@ void check_state(const Scene& scene, const BuiltScene& built) {
 // As of so many elements of each strand as the contact reaches.
 void set_period_inertia(double reach, Topology& topology) {
   const Topology strands = strands_of(topology);
-  for (int s = 0; topology.images > 0 && s < strands.tubes(); ++s) {
+  for (int s = 0; topology.groups.images > 0 && s < strands.tubes(); ++s) {
     const TubeType& type = strands.type_of(s);
-    topology.period_inertia += std::max(1, type.elements_within(reach)) * type.mass;
+    topology.groups.period_inertia += std::max(1, type.elements_within(reach)) * type.mass;
   }
 }
 
@@ -216,7 +216,7 @@ BuiltScene build(Scene& scene) {
   if (scene.has_ends(Drive::Ends::endless)) {
     const double reach = interaction_of(scene, out.law).cutoff() + scene.source->slides();
     for (const auto& drive : scene.drives)
-      out.topology.images = std::max(out.topology.images, drive->images(reach / scene.element_length));
+      out.topology.groups.images = std::max(out.topology.groups.images, drive->images(reach / scene.element_length));
   }
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);
@@ -231,7 +231,7 @@ BuiltScene build(Scene& scene) {
   draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
-  out.topology.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
+  out.topology.groups.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
   set_collapse(scene, out.topology);
   check_state(scene, out);
   if (scene.lineage != 0) random = Random(lineage_key(scene.start.seed, scene.lineage));

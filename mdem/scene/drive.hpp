@@ -58,7 +58,7 @@ class Drive {
   virtual void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const {}
 
   virtual Ends ends() const { return Ends::free; }
-  // The number of elements at each end of a strand that are images (Topology::images), where the contact reaches
+  // The number of elements at each end of a strand that are images (TubeGroups::images), where the contact reaches
   // over so many elements.
   virtual int images(double /*reach*/) const { return 0; }
   // Whether the drive acts on single elements. A scene with shorter elements then keeps the centres of these

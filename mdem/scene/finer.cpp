@@ -129,7 +129,7 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
   for (const auto& drive : scene.drives)
     if (const std::string why = drive->why_not_split(); !why.empty()) return why;
   if (!scene.memory.broken.empty()) return "tubes of the state have broken";
-  if (!topology.strand_begin.empty()) return "tubes end inside of the rope, at places that follow from its elements";
+  if (!topology.groups.strand_begin.empty()) return "tubes end inside of the rope, at places that follow from its elements";
   const ContactLawKind* law = contact_law_kind(scene.contact.law);
   if (law && !law->any_element_length)
     return fmt::format("law \"{}\" holds for elements of {:.4g} nm alone", law->name,

@@ -36,7 +36,7 @@ int elements_held(const Scene& scene, int tube) {
 }
 
 double free_length(const Scene& scene, const Topology& topology, int tube) {
-  const double holes = topology.strand_begin.empty() ? topology.strand_holes : 0;
+  const double holes = topology.groups.strand_begin.empty() ? topology.groups.strand_holes : 0;
   return std::max(1, topology.length_of(tube) - elements_held(scene, tube)) *
              topology.type_of(tube).element_length +
          holes;
@@ -97,7 +97,7 @@ std::vector<EndContact> end_contacts(const Scene& scene) {
 }
 
 void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction) {
-  if (topology.ends_meet) add_term(tube_ends_term(end_contacts(scene), topology), interaction);
+  if (topology.groups.ends_meet) add_term(tube_ends_term(end_contacts(scene), topology), interaction);
 }
 
 Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law) {

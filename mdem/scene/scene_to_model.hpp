@@ -49,7 +49,7 @@ double least_exclusion(const Scene& scene, const ContactLaw* law);
 Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law);
 inline Interaction interaction_of(const Scene& scene) { return interaction_of(scene, contact_law(scene)); }
 
-// Adds the contact of ends in line, where these meet (Topology::ends_meet).
+// Adds the contact of ends in line, where these meet (TubeGroups::ends_meet).
 void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction);
 // Adds the force terms of the drives, and the contact of ends in line. Throws InputError for elements that do not
 // exist.

@@ -150,9 +150,9 @@ class StateReader {
       if (rows_.empty()) {
         check_length();
         check_sets();
-        topology_.strand_begin = stated_strands(csv_);
+        topology_.groups.strand_begin = stated_strands(csv_);
         broken_ = stated_breaks(csv_);
-        topology_.rope_begin = stated_begins(csv_, ropes_words, "ropes", "strand of each rope");
+        topology_.groups.rope_begin = stated_begins(csv_, ropes_words, "ropes", "strand of each rope");
       }
       if (rows_.size() == static_cast<std::size_t>(max_elements))
         fail("", fmt::format("has more than {} elements", max_elements), "take fewer");
@@ -193,7 +193,7 @@ class StateReader {
   }
 
   void close_strands() {
-    std::vector<int>& begin = topology_.strand_begin;
+    std::vector<int>& begin = topology_.groups.strand_begin;
     if (begin.empty()) return;
     // The comment counts the parts of broken tubes.
     for (int& tube : begin)
@@ -217,12 +217,12 @@ class StateReader {
       }
       const auto i = static_cast<std::size_t>(topology_.tube_begin[static_cast<std::size_t>(t)]);
       holes += (rows_[i].position - rows_[i - 1].position).norm() - element_length_;
-      topology_.strand_holes = std::max(topology_.strand_holes, holes);
+      topology_.groups.strand_holes = std::max(topology_.groups.strand_holes, holes);
     }
   }
 
   void close_ropes() {
-    std::vector<int>& begin = topology_.rope_begin;
+    std::vector<int>& begin = topology_.groups.rope_begin;
     if (begin.empty()) return;
     if (begin.back() >= topology_.strands())
       throw InputError({path_, 0, ""},
@@ -362,10 +362,10 @@ std::vector<OutputColumn> state_columns() { return {columns.begin(), columns.end
 void read_state_csv(const std::string& path, Topology& topology, State& state) {
   topology.tube_begin = {0};
   topology.tube_type.clear();
-  topology.strand_begin.clear();
-  topology.rope_begin.clear();
-  topology.strand_holes = 0;
-  topology.images = 0;
+  topology.groups.strand_begin.clear();
+  topology.groups.rope_begin.clear();
+  topology.groups.strand_holes = 0;
+  topology.groups.images = 0;
   state = StateReader(path, topology).read();
 }
 
@@ -392,12 +392,12 @@ StateNotes read_state_notes(const std::string& path) {
 std::string state_csv(const Topology& topology, const State& s, const StateNotes& notes) {
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));
-  if (!topology.strand_begin.empty())
+  if (!topology.groups.strand_begin.empty())
     text += fmt::format("# {}{}\n", strands_words,
-                        fmt::join(topology.strand_begin.begin(), topology.strand_begin.end() - 1, ","));
-  if (!topology.rope_begin.empty())
+                        fmt::join(topology.groups.strand_begin.begin(), topology.groups.strand_begin.end() - 1, ","));
+  if (!topology.groups.rope_begin.empty())
     text += fmt::format("# {}{}\n", ropes_words,
-                        fmt::join(topology.rope_begin.begin(), topology.rope_begin.end() - 1, ","));
+                        fmt::join(topology.groups.rope_begin.begin(), topology.groups.rope_begin.end() - 1, ","));
   if (!notes.memory.empty()) text += fmt::format("# {}{}\n", memory_words, notes.memory);
   if (!notes.broken.empty()) text += fmt::format("# {}{}\n", broken_words, fmt::join(notes.broken, ","));
   for (int t = 0; t < topology.tubes(); ++t)

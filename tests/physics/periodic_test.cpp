@@ -87,8 +87,8 @@ struct Longer {
     const double turn = slice.load->schedule().value(0) * slice.load->period(),
                  length = slice_length(of, slice.p.state);
     topology.types = of.types;
-    topology.strand_begin = {0};
-    topology.ends_meet = of.ends_meet;
+    topology.groups.strand_begin = {0};
+    topology.groups.ends_meet = of.ends_meet;
     state = State(static_cast<std::size_t>(of.strands() * long_strand));
     const auto in_slice = [&](int k) { return k < g + n ? k : g + (k - g) % n; };
     for (int s = 0; s < of.strands(); ++s) {
@@ -107,7 +107,7 @@ struct Longer {
         state.orientation.set(to, (r * Quaternion(slice.p.state.orientation[i])).normalized());
       }
       topology.add_tube(length_of_tube, of.tube_type[of.tube_of(begin + in_slice(long_strand - 1))]);
-      topology.strand_begin.push_back(topology.tubes());
+      topology.groups.strand_begin.push_back(topology.tubes());
     }
     // A link may lead into the next period.
     const auto place = [&](int element, int period) {
@@ -284,7 +284,7 @@ TEST(PeriodicSlice, AYarnKeepsMomentumAndEnergyWhileItBreaks) {
   const auto begins = [&](int e) { return now.tube_begin[static_cast<std::size_t>(now.tube_of(e))] == e; };
   for (int e = 0; e < now.elements(); ++e)
     EXPECT_TRUE(e % slice.strand() == 0 || begins(e) == begins(now.original_of(e))) << e;
-  EXPECT_EQ(now.images, slice.images);
+  EXPECT_EQ(now.groups.images, slice.images);
 }
 
 // Thin tubes in line with wide ones are pressed as thin ones: their neighbours come nearer.
@@ -418,7 +418,7 @@ struct Free {
     return energies_of_period(still)->potential() - tension * slice_length(slice.p.topology, s);
   }
   double kinetic(const State& s) const {
-    double sum = 0.5 * slice.p.topology.period_inertia * std::pow(rate(s), 2);
+    double sum = 0.5 * slice.p.topology.groups.period_inertia * std::pow(rate(s), 2);
     for (int e = 0; e < slice.p.topology.elements(); ++e) {
       const TubeType& type = slice.p.topology.type_of_element(e);
       const auto i = static_cast<std::size_t>(e);
@@ -448,7 +448,7 @@ TEST(PeriodicSlice, TheForceOnItsLengthIsTheGradientOfTheEnergy) {
     ASSERT_GT(std::fabs(force), 1);
     Simulation s = start(slice.scene, slice.p);
     s.steps(1, true);
-    EXPECT_NEAR(free.rate(s.state()) / slice.p.time_step * slice.p.topology.period_inertia, force,
+    EXPECT_NEAR(free.rate(s.state()) / slice.p.time_step * slice.p.topology.groups.period_inertia, force,
                 1e-3 * std::fabs(force));
   }
 }
@@ -483,7 +483,7 @@ TEST(PeriodicSlice, ABathHoldsItsLength) {
       square += std::pow(free.rate(s), 2) / draws;
       both += free.rate(s) * (s.velocity.z[above] - s.velocity.z[below]) / draws;
     }
-    const double expected = kT / free.slice.p.topology.period_inertia,
+    const double expected = kT / free.slice.p.topology.groups.period_inertia,
                  of_one = kT / free.slice.p.topology.types[0].mass;
     EXPECT_NEAR(square, expected, 0.1 * expected);
     EXPECT_NEAR(both, 0, 4 * std::sqrt(2 * expected * of_one / draws));

@@ -660,7 +660,7 @@ Rope plied(int ropes, const std::vector<Vector3>& curve, double radius, double t
     for (const Vector2d& p : hexagonal(1))
       lattice.push_back(Eigen::Rotation2Dd(2 * units::pi * k / ropes) * (p + Vector2d(radius, 0)));
   Rope rope = bent_rope(lattice, curve, twist);
-  for (int k = 0; k <= ropes; ++k) rope.topology.rope_begin.push_back(7 * k);
+  for (int k = 0; k <= ropes; ++k) rope.topology.groups.rope_begin.push_back(7 * k);
   return rope;
 }
 
@@ -695,7 +695,7 @@ TEST(ObservedPlies, TwistAndPackingAreThoseOfEachRope) {
   const Rope rope = plied(2, line, std::sqrt(7.0) / 2 * spacing, twist);
   const RopeObservation o = observe_plies(rope);
   Rope one = rope;
-  one.topology.rope_begin.clear();
+  one.topology.groups.rope_begin.clear();
   EXPECT_LT(o.beta, 0.7 * observe_plies(one).beta);
   EXPECT_NEAR(o.beta, std::atan(rate * spacing), 0.15 * o.beta) << "by inclination of the rope";
   EXPECT_NEAR(o.geometric_twist, twist, 1e-6 * twist) << "of all about the axis";

@@ -210,11 +210,11 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   double stiffness = 0;  // eV/nm, of all strands
   for (int s = 0; s < topology.strands(); ++s)
     stiffness +=
-        topology.type_of(topology.strand_begin.empty() ? s : topology.strand_begin[static_cast<std::size_t>(s)])
+        topology.type_of(topology.groups.strand_begin.empty() ? s : topology.groups.strand_begin[static_cast<std::size_t>(s)])
             .bond.stretch;
   const double strain_of_pressure = least_of(tension) / stiffness,
                least = std::min(least_of(strain), strain_of_pressure);
-  out.images = topology.images;
+  out.images = topology.groups.images;
   ROPEWALK_EXPECTS(out.images > 0 && topology.elements() % topology.strands() == 0);
   if (const int needed = images_within(reach / a, least); out.images < needed)
     throw InputError(
@@ -226,7 +226,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
         fmt::format("take at least {}{}", needed,
                     images > 0 && least == least_of(strain) ? ", or leave the key away" : ""));
   const int all = topology.elements() / topology.strands();
-  out.period_ = topology.period;
+  out.period_ = topology.groups.period;
   out.reach_ = reach;
   // Twice what a wave needs along the slice, so that the interior follows.
   const double twist_wave = std::sqrt(type.bond.twist / (type.inertia / a)),
@@ -349,7 +349,7 @@ void PeriodicLoad::constrain_after(const Forces& total, double dt, const Topolog
     moved += sign * (on_image - total.force.z[static_cast<std::size_t>(original)]);
     mass += topology.type_of_element(image).mass;
   });
-  const double more = dt * (pull / topology.period_inertia - moved / mass);
+  const double more = dt * (pull / topology.groups.period_inertia - moved / mass);
   lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s, more), s);
 }
 

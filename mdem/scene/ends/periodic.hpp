@@ -16,7 +16,7 @@
 //
 // f the forces on the images, s = 1 for the upper ones and -1 for the lower ones: what holds the images to the
 // slice's own elements is the derivative of U by L, since forces among the images of one end cancel. The inertia W
-// is the mass of as many elements at one end as the contact reaches (Topology::period_inertia). So L, the slice's
+// is the mass of as many elements at one end as the contact reaches (TubeGroups::period_inertia). So L, the slice's
 // own elements and a thermostat sample the canonical ensemble of an endless rope under F, however many images there
 // are. L and L' are kept in the images themselves.
 #pragma once
@@ -35,7 +35,7 @@ class PeriodicLoad : public Load {
   std::vector<Schedule::Point> strain;   // of the period; none: it stays
   std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
 
-  // For the tubes of a slice (Topology::images). `reach` (nm): of the contact, between element centres. Throws
+  // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres. Throws
   // InputError where the images do not reach as far.
   PeriodicLoad on_tubes(const Topology& topology, double reach, const std::string& path) const;
   // Winds straight tubes evenly about the z axis where the slice is twisted from the start.

@@ -282,10 +282,10 @@ void PliesSource::place(const Scene& scene, double spacing_of_tubes, Random&, To
   const double a = scene.element_length;
   const int elements = sizes(a).elements;
   const Helices h = touching(*this, spacing_of_tubes, elements * a);
-  topology.rope_begin = {0};
+  topology.groups.rope_begin = {0};
   for (int k = 0; k < ropes; ++k) {
     for (int t = 0; t < rope.tubes; ++t) topology.add_tube(elements);
-    topology.rope_begin.push_back(topology.tubes());
+    topology.groups.rope_begin.push_back(topology.tubes());
   }
   state = State(static_cast<std::size_t>(topology.elements()));
   std::vector<double> at(static_cast<std::size_t>(elements));

@@ -172,7 +172,7 @@ std::vector<std::pair<double, double>> RopeSource::places(double spacing_of_tube
 
 void RopeSource::place(const Scene& scene, double spacing_of_tubes, Random& random, Topology& topology,
                        State& state) const {
-  if (topology.images > 0)
+  if (topology.groups.images > 0)
     place_slice(scene, spacing_of_tubes, random, topology, state);
   else if (tube_length > 0)
     place_strands(scene, spacing_of_tubes, random, topology, state);
@@ -188,7 +188,7 @@ std::string RopeSource::description(const Topology& t, const State&, double spac
   if (!(tube_length > 0))
     return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm", t.length_of(0) * t.longest_element(),
                        spacing_of_tubes);
-  if (t.images > 0) {
+  if (t.groups.images > 0) {
     int ends = 0;
     for (int tube = 0; tube < t.tubes(); ++tube)
       ends += !t.ends_strand(tube) && !t.is_image(t.tube_begin[tube + 1] - 1);
@@ -196,11 +196,11 @@ std::string RopeSource::description(const Topology& t, const State&, double spac
         "a slice of an endless rope that repeats itself after {:.4g} nm, spacing {:.4g} nm: {} tubes of {:.4g} nm "
         "in "
         "the mean, in {} strands",
-        t.period, spacing_of_tubes, ends,
-        t.strands() * (t.elements() / t.strands() - 2 * t.images) * t.longest_element() / ends, t.strands());
+        t.groups.period, spacing_of_tubes, ends,
+        t.strands() * (t.elements() / t.strands() - 2 * t.groups.images) * t.longest_element() / ends, t.strands());
   }
   return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm, of {} tubes of {:.4g} nm in the mean, in {} strands",
-                     t.elements() / t.strands() * t.longest_element() + t.strand_holes, spacing_of_tubes, t.tubes(),
+                     t.elements() / t.strands() * t.longest_element() + t.groups.strand_holes, spacing_of_tubes, t.tubes(),
                      t.elements() * t.longest_element() / t.tubes(), t.strands());
 }
 

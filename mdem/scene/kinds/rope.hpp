@@ -53,7 +53,7 @@ class RopeSource : public Source {
   double drawn_length(double element_length, Random& random) const;  // nm, of a tube
   // The gap of a scene: the typed one, or where ends rest. Refuses one into which ends would be driven.
   double least_gap(const Scene& scene) const;
-  // A slice of an endless rope (Topology::images): tubes end at the same elements in each period.
+  // A slice of an endless rope (TubeGroups::images): tubes end at the same elements in each period.
   void place_slice(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
   std::vector<int> cuts_of_period(int strand_shift, int own, int tubes_in_line, int images, double element_length,
                                   Random& random) const;

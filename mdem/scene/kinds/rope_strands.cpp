@@ -76,7 +76,7 @@ void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Rand
   }
   const double holes = static_cast<double>(most) * least_hole;
   const int elements = whole_elements(length - holes, a);
-  topology.strand_begin = {0};
+  topology.groups.strand_begin = {0};
   std::vector<Vector3> positions;
   for (std::size_t s = 0; s < at.size(); ++s) {
     std::vector<int>& cut = cuts_of[s];
@@ -90,8 +90,8 @@ void RopeSource::place_strands(const Scene& scene, double spacing_of_tubes, Rand
       for (; from < to; ++from, z += a) positions.emplace_back(at[s].first, at[s].second, z);
       z += here;
     }
-    if (cut.size() > 1) topology.strand_holes = holes;
-    topology.strand_begin.push_back(topology.tubes());
+    if (cut.size() > 1) topology.groups.strand_holes = holes;
+    topology.groups.strand_begin.push_back(topology.tubes());
   }
   state = State(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) state.position.set(i, positions[i]);
@@ -132,7 +132,7 @@ std::vector<int> RopeSource::cuts_of_period(int strand_shift, int own, int tubes
 void RopeSource::place_slice(const Scene& scene, double spacing_of_tubes, Random& random, Topology& topology,
                              State& state) const {
   const double a = scene.element_length;
-  const int images = topology.images, all = whole_elements(length, a);
+  const int images = topology.groups.images, all = whole_elements(length, a);
   const bool cut = tube_length > 0;
   const double hole = cut ? least_gap(scene) : 0;
   const double apart = (all - 2 * images) * a;  // nm, about the period
@@ -144,16 +144,16 @@ void RopeSource::place_slice(const Scene& scene, double spacing_of_tubes, Random
         fmt::format("leaves {} elements between {} images at each end of the slice", std::max(0, own), images),
         fmt::format("make the tubes at least {:.4g} nm long",
                     (std::max(images, in_line * (least_elements + 1)) + 2 * images) * a + in_line * hole));
-  topology.period = own * a + in_line * hole;
-  if (cut && tube_length > topology.period)
+  topology.groups.period = own * a + in_line * hole;
+  if (cut && tube_length > topology.groups.period)
     throw InputError(
         {scene.path, 0, "rope.tube_length_nm"},
         fmt::format("is {:.4g} nm, and the slice repeats itself after {:.4g} nm: a tube would go on "
                     "beside its own image",
-                    tube_length, topology.period),
-        fmt::format("make rope.length_nm at least {:.4g}", length + tube_length - topology.period + a));
+                    tube_length, topology.groups.period),
+        fmt::format("make rope.length_nm at least {:.4g}", length + tube_length - topology.groups.period + a));
   std::vector<Vector3> positions;
-  if (cut) topology.strand_begin = {0};
+  if (cut) topology.groups.strand_begin = {0};
   for (const auto& [x, y] : places(spacing_of_tubes, scene.start.seed)) {
     const std::vector<int> begins =
         cut ? cuts_of_period(shift_of(x, y, spacing_of_tubes), own, in_line, images, a, random)
@@ -170,13 +170,13 @@ void RopeSource::place_slice(const Scene& scene, double spacing_of_tubes, Random
       }
       ++length_so_far;
       positions.emplace_back(x, y,
-                             period * topology.period + in_period * a +
+                             period * topology.groups.period + in_period * a +
                                  static_cast<double>(upper - begins.begin()) * hole -
-                                 0.5 * (topology.period - a + hole));
+                                 0.5 * (topology.groups.period - a + hole));
     }
     topology.add_tube(length_so_far);
-    topology.strand_holes = std::max(topology.strand_holes, holes * hole);
-    if (cut) topology.strand_begin.push_back(topology.tubes());
+    topology.groups.strand_holes = std::max(topology.groups.strand_holes, holes * hole);
+    if (cut) topology.groups.strand_begin.push_back(topology.tubes());
   }
   state = State(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) state.position.set(i, positions[i]);

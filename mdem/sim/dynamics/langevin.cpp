@@ -55,7 +55,7 @@ double period_rate(const Topology& topology, const State& state) {
 void set_period_rate(const Topology& topology, double rate, State& state) {
   const int strand = topology.elements() / topology.strands();
   for (int first = 0; first < topology.elements(); first += strand)
-    for (int k = 0; k < topology.images; ++k)
+    for (int k = 0; k < topology.groups.images; ++k)
       for (const int image : {first + k, first + strand - 1 - k}) {
         const int original = topology.original_of(image);
         state.velocity.z[static_cast<std::size_t>(image)] =
@@ -71,7 +71,7 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
   const double energy =
       -std::expm1(-2 * friction_ * dt) * units::boltzmann * temperature_.value(state.time);  // (1 - c^2) kT
   const auto n = static_cast<int>(state.size());
-  const double rate = topology.images > 0 ? period_rate(topology, state) : 0;
+  const double rate = topology.groups.images > 0 ? period_rate(topology, state) : 0;
   for_each((n + group - 1) / group, state.size() > parallel_from, [&](int block) {
     const int first = block * group;
     Normals normal;
@@ -88,10 +88,10 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
                                         std::sqrt(energy / type.inertia) * Vector3(of[3][k], of[4][k], of[5][k]));
     }
   });
-  if (topology.images == 0) return;
+  if (topology.groups.images == 0) return;
   Normals normal;  // beyond those of all elements
   draw(seed_, state.step, state.part, (n + group - 1) / group * group, normal);
-  set_period_rate(topology, keep * rate + std::sqrt(energy / topology.period_inertia) * normal.of[2][0], state);
+  set_period_rate(topology, keep * rate + std::sqrt(energy / topology.groups.period_inertia) * normal.of[2][0], state);
 }
 
 }  // namespace ropewalk

@@ -7,7 +7,7 @@
 //   v <- c v + sqrt((1 - c^2) kT/m) n,   w <- c w + sqrt((1 - c^2) kT/I) n,   c = exp(-g dt),
 //
 // with normal numbers n of variance 1. They follow from (seed, step, part, element, component) alone.
-// In a slice the period is one more such coordinate, with the mass Topology::period_inertia.
+// In a slice the period is one more such coordinate, with the mass TubeGroups::period_inertia.
 // T in K, that of the schedule at state.time; g in 1/ps. At T = 0 it is pure friction: the kinetic energy of free
 // elements decays as exp(-2 g t). R. L. Davidchack, T. E. Ouldridge, M. V. Tretyakov, J. Chem. Phys. 142, 144114
 // (2015), DOI 10.1063/1.4916312.

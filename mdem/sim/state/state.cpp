@@ -13,11 +13,13 @@ int Topology::tube_of(int element) const {
 }
 
 bool Topology::begins_strand(int tube) const {
-  return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube);
+  return groups.strand_begin.empty() ||
+         std::binary_search(groups.strand_begin.begin(), groups.strand_begin.end(), tube);
 }
 
 bool Topology::ends_strand(int tube) const {
-  return strand_begin.empty() || std::binary_search(strand_begin.begin(), strand_begin.end(), tube + 1);
+  return groups.strand_begin.empty() ||
+         std::binary_search(groups.strand_begin.begin(), groups.strand_begin.end(), tube + 1);
 }
 
 namespace {
@@ -29,8 +31,8 @@ struct InSlice {
   InSlice(const Topology& topology, int element) {
     const int strand = topology.elements() / topology.strands();
     place = element % strand;
-    own = strand - 2 * topology.images;
-    images = topology.images;
+    own = strand - 2 * topology.groups.images;
+    images = topology.groups.images;
   }
   bool is_own() const { return place >= images && place < images + own; }
 };
@@ -39,35 +41,35 @@ struct InSlice {
 
 int Topology::original_of(int element) const {
   ROPEWALK_EXPECTS(element >= 0 && element < elements());
-  if (images == 0) return element;
+  if (groups.images == 0) return element;
   const InSlice at(*this, element);
   if (at.is_own()) return element;
   return at.place < images ? element + at.own : element - at.own;
 }
 
 int Topology::image_above(int element) const {
-  if (images == 0) return -1;
+  if (groups.images == 0) return -1;
   const InSlice at(*this, element);
   return at.is_own() && at.place < 2 * images ? element + at.own : -1;
 }
 
 int Topology::image_below(int element) const {
-  if (images == 0) return -1;
+  if (groups.images == 0) return -1;
   const InSlice at(*this, element);
   return at.is_own() && at.place >= at.own ? element - at.own : -1;
 }
 
 int Topology::own_elements(int tube) const {
-  if (images == 0) return length_of(tube);
+  if (groups.images == 0) return length_of(tube);
   const int strand = elements() / strands(), first = tube_begin[tube] / strand * strand;
-  return std::max(
-      0, std::min(tube_begin[tube + 1], first + strand - images) - std::max(tube_begin[tube], first + images));
+  return std::max(0, std::min(tube_begin[tube + 1], first + strand - groups.images) -
+                         std::max(tube_begin[tube], first + groups.images));
 }
 
 std::pair<int, int> Topology::strands_of_rope(int rope) const {
   ROPEWALK_EXPECTS(rope >= 0 && rope < ropes());
-  if (rope_begin.empty()) return {0, strands()};
-  return {rope_begin[static_cast<std::size_t>(rope)], rope_begin[static_cast<std::size_t>(rope) + 1]};
+  if (groups.rope_begin.empty()) return {0, strands()};
+  return {groups.rope_begin[static_cast<std::size_t>(rope)], groups.rope_begin[static_cast<std::size_t>(rope) + 1]};
 }
 
 std::pair<int, int> Topology::strand_of(int tube) const {
@@ -81,12 +83,9 @@ Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
   ROPEWALK_EXPECTS(static_cast<int>(flags.size()) == topology.elements() && !topology.part);
   Topology cut;
   cut.types = topology.types;
-  cut.strand_holes = topology.strand_holes;
-  cut.images = topology.images;
-  cut.period = topology.period;
-  cut.period_inertia = topology.period_inertia;
-  cut.rope_begin = topology.rope_begin;
-  cut.strand_begin = {0};
+  cut.groups = topology.groups;
+  cut.groups.strand_begin = {0};
+  cut.groups.ends_meet = false;
   for (int t = 0; t < topology.tubes(); ++t) {
     int begin = topology.tube_begin[t];
     for (int i = begin; i < topology.tube_begin[t + 1]; ++i) {
@@ -94,23 +93,21 @@ Topology cut_behind(const Topology& topology, const std::vector<char>& flags) {
       cut.add_tube(i + 1 - begin, topology.tube_type[t]);
       begin = i + 1;
     }
-    if (topology.ends_strand(t)) cut.strand_begin.push_back(cut.tubes());
+    if (topology.ends_strand(t)) cut.groups.strand_begin.push_back(cut.tubes());
   }
   return cut;
 }
 
 Topology strands_of(const Topology& topology) {
-  if (topology.strand_begin.empty()) return topology;
+  if (topology.groups.strand_begin.empty()) return topology;
   Topology strands;
   strands.types = topology.types;
-  strands.strand_holes = topology.strand_holes;
-  strands.images = topology.images;
-  strands.period = topology.period;
-  strands.period_inertia = topology.period_inertia;
-  strands.rope_begin = topology.rope_begin;
+  strands.groups = topology.groups;
+  strands.groups.strand_begin.clear();
+  strands.groups.ends_meet = false;
   for (int s = 0; s < topology.strands(); ++s) {
-    const auto first = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s)]),
-               behind = static_cast<std::size_t>(topology.strand_begin[static_cast<std::size_t>(s) + 1]);
+    const auto first = static_cast<std::size_t>(topology.groups.strand_begin[static_cast<std::size_t>(s)]),
+               behind = static_cast<std::size_t>(topology.groups.strand_begin[static_cast<std::size_t>(s) + 1]);
     strands.add_tube(topology.tube_begin[behind] - topology.tube_begin[first], topology.tube_type[first]);
   }
   return strands;
@@ -129,10 +126,11 @@ int Topology::last_within(int elements, int element, int tube) const {
   if (!part) {
     std::size_t last_tube = t;
     const int last = element + elements;
-    while (ends_meet && tube_begin[last_tube + 1] <= last && !ends_strand(static_cast<int>(last_tube))) ++last_tube;
+    while (groups.ends_meet && tube_begin[last_tube + 1] <= last && !ends_strand(static_cast<int>(last_tube)))
+      ++last_tube;
     return std::min(last, tube_begin[last_tube + 1] - 1);
   }
-  ROPEWALK_EXPECTS(!ends_meet);
+  ROPEWALK_EXPECTS(!groups.ends_meet);
   // Other pieces of the tube may follow.
   const auto number = [&](int i) { return part->number[static_cast<std::size_t>(i)]; };
   const int limit = std::min(number(element) + elements, part->tube_end[t] - 1);

@@ -114,12 +114,9 @@ struct PartOfScene {
   std::vector<int> tube_end;  // of each piece, the number behind the last element of its tube in the scene
 };
 
-// Elements and their tubes. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
-// ones are bonded.
-struct Topology {
-  std::vector<int> tube_begin{0};
-  std::vector<int> tube_type;  // of each tube, an index of `types`
-  std::vector<TubeType> types = std::vector<TubeType>(1);
+// What the tubes of a scene form together. The mass, length and section of a rope follow from it
+// (observe/rope_size.hpp).
+struct TubeGroups {
   // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of
   // each strand, and the number of tubes. Empty: each tube is a strand.
   std::vector<int> strand_begin;
@@ -134,13 +131,24 @@ struct Topology {
   double period_inertia = 0;  // eV ps^2/nm^2, of its changes
   // Ropes that are plied: the first strand of each, and the number of strands. Empty: all are one rope.
   std::vector<int> rope_begin;
+};
+
+// Elements and their tubes. Tube t owns the elements tube_begin[t] .. tube_begin[t+1] - 1; consecutive
+// ones are bonded.
+struct Topology {
+  std::vector<int> tube_begin{0};
+  std::vector<int> tube_type;  // of each tube, an index of `types`
+  std::vector<TubeType> types = std::vector<TubeType>(1);
+  TubeGroups groups;
   std::optional<PartOfScene> part;  // none: these elements are the scene
 
   int tubes() const { return static_cast<int>(tube_begin.size()) - 1; }
   int elements() const { return tube_begin.back(); }
   int bonds() const { return elements() - tubes(); }
-  int strands() const { return strand_begin.empty() ? tubes() : static_cast<int>(strand_begin.size()) - 1; }
-  int ropes() const { return rope_begin.empty() ? 1 : static_cast<int>(rope_begin.size()) - 1; }
+  int strands() const {
+    return groups.strand_begin.empty() ? tubes() : static_cast<int>(groups.strand_begin.size()) - 1;
+  }
+  int ropes() const { return groups.rope_begin.empty() ? 1 : static_cast<int>(groups.rope_begin.size()) - 1; }
   // The strands of a rope: the first, and the one behind the last.
   std::pair<int, int> strands_of_rope(int rope) const;
   // Whether the first end of a tube, or its last one, is that of its strand.

@@ -44,7 +44,7 @@ TEST(RopeSize, OfEndlessTubesIsThatOfItsTubes) {
   expect_tubes(plies, 14);
   EXPECT_NEAR(rope.size.mass, 7 * rope.tube() * 24 * rope.scene.element_length, 1e-9 * rope.size.mass);
   const Topology& t = interior.p.topology;
-  EXPECT_NEAR(interior.size.mass, 7 * interior.tube() * t.period, 1e-9 * interior.size.mass);
+  EXPECT_NEAR(interior.size.mass, 7 * interior.tube() * t.groups.period, 1e-9 * interior.size.mass);
   EXPECT_NEAR(heavy.size.mass, interior.size.mass, 1e-9 * interior.size.mass);
 }
 
@@ -55,7 +55,7 @@ TEST(RopeSize, OfAYarnIsThatOfItsTubes) {
   for (const Sized* one : {&yarn, &finite}) expect_tubes(*one, 7);
   const Topology& t = yarn.p.topology;
   ASSERT_GT(t.tubes(), 4 * t.strands());
-  const int own = t.elements() / t.strands() - 2 * t.images;
+  const int own = t.elements() / t.strands() - 2 * t.groups.images;
   EXPECT_NEAR(yarn.size.mass, 7 * yarn.tube() * own * yarn.scene.element_length, 1e-9 * yarn.size.mass);
 }
 

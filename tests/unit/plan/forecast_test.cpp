@@ -32,7 +32,7 @@ std::string slice(double length, const std::string& rope, const std::string& twi
 
 double period_of(const std::string& rope) {
   Scene scene = scene_of(slice(130, rope, "[[0, 0], [100, 1]]"));
-  return prepare(scene).topology.period;
+  return prepare(scene).topology.groups.period;
 }
 
 TEST(QuasiStatic, ASliceIsAsFarFromRestAsARopeOfItsLengthBetweenClamps) {

@@ -230,7 +230,7 @@ class DryFrictionTerm : public ForceTerm {
     }
   }
   static int image_of(const Topology& topology, int i) {
-    if (topology.images == 0) return 0;
+    if (topology.groups.images == 0) return 0;
     const int original = topology.original_of(i);
     return original == i ? 0 : original < i ? 1 : -1;
   }

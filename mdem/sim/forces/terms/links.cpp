@@ -97,13 +97,13 @@ bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
 // In a slice a link and its images are one: that of two own elements, or of an own one and an image above it.
 bool stands_for_images(const Topology& topology, int i, int j) {
   const auto above = [&](int e) { return topology.original_of(e) < e; };
-  return topology.images == 0 || (!topology.is_image(i) && (!topology.is_image(j) || above(j))) ||
+  return topology.groups.images == 0 || (!topology.is_image(i) && (!topology.is_image(j) || above(j))) ||
          (!topology.is_image(j) && above(i));
 }
 
 // The same link one period higher where it joins an image below.
 void lift(const Topology& topology, LinkPlace& link) {
-  if (topology.images == 0 || stands_for_images(topology, link.a, link.b)) return;
+  if (topology.groups.images == 0 || stands_for_images(topology, link.a, link.b)) return;
   const auto higher = [&](int e) {
     return topology.is_image(e) ? topology.original_of(e) : topology.image_above(e);
   };

@@ -196,7 +196,7 @@ TEST(Failure, StoredEventsCutTheTubesAgain) {
   EXPECT_TRUE(breaks.any_breaks());
   const Topology now = breaks.tubes_at(s.state().time), true_now = s.tubes_now();
   EXPECT_EQ(now.tube_begin, true_now.tube_begin);
-  EXPECT_EQ(now.strand_begin, true_now.strand_begin);
+  EXPECT_EQ(now.groups.strand_begin, true_now.groups.strand_begin);
   const double second = s.term_events()[1].time;
   EXPECT_EQ(breaks.tubes_at(second - 1e-3).tubes(), 8) << "after the first break";
   EXPECT_EQ(breaks.tubes_at(0).tubes(), 7);

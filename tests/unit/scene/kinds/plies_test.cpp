@@ -160,7 +160,7 @@ TEST(Plies, KeepTheirRopesInAStateFile) {
   Topology read = p.topology;
   State state;
   read_state_csv(file.string(), read, state);
-  EXPECT_EQ(read.rope_begin, (std::vector<int>{0, 7, 14}));
+  EXPECT_EQ(read.groups.rope_begin, (std::vector<int>{0, 7, 14}));
   Scene again =
       scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[state]\nfile = \"" +
                         file.string() + "\"\n[run]\nduration_ps = 1\n",

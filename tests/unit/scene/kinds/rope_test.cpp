@@ -52,7 +52,7 @@ TEST(RopeOfFiniteTubes, FillsEachStrandFromEndToEnd) {
     ASSERT_EQ(t.strands(), 7) << stagger;
     EXPECT_GT(t.tubes(), 14);
     const Topology strands = strands_of(t);
-    const double whole = strands.length_of(0) * t.types[0].element_length + t.strand_holes,
+    const double whole = strands.length_of(0) * t.types[0].element_length + t.groups.strand_holes,
                  rest = coaxial_gap(scene);
     EXPECT_NEAR(whole, 60, 0.51 * t.types[0].element_length);
     EXPECT_GT(common_length(strands), 0) << "sections have all strands";
@@ -174,8 +174,8 @@ TEST(RopeOfFiniteTubes, HasSectionsAndKeepsThemInAStateFile) {
   State state;
   read_state_csv(file.string(), read, state);
   EXPECT_EQ(read.tube_begin, p.topology.tube_begin);
-  EXPECT_EQ(read.strand_begin, p.topology.strand_begin);
-  EXPECT_NEAR(read.strand_holes, p.topology.strand_holes, 1e-9);
+  EXPECT_EQ(read.strand_begin, p.topology.groups.strand_begin);
+  EXPECT_NEAR(read.strand_holes, p.topology.groups.strand_holes, 1e-9);
   std::string damaged = state_csv(p.topology, p.state);
   const auto at = damaged.find("strands_begin_with_tubes: ");
   ASSERT_NE(at, std::string::npos);
@@ -197,7 +197,7 @@ TEST(RopeOfFiniteTubes, TakesATypeForEachStrandOrEachTube) {
   };
   const Topology t = types("1, 0, 0, 0, 0, 0, 0");
   for (int tube = 0; tube < t.tubes(); ++tube)
-    EXPECT_EQ(t.tube_type[static_cast<std::size_t>(tube)], tube < t.strand_begin[1] ? 1 : 0);
+    EXPECT_EQ(t.tube_type[static_cast<std::size_t>(tube)], tube < t.groups.strand_begin[1] ? 1 : 0);
   EXPECT_GT(tubes, 7);
   EXPECT_THROW(types("0, 1"), InputError);
 }

@@ -127,7 +127,7 @@ TEST(TubeEnds, ForcesAndTorquesAreTheGradientAndKeepMomentum) {
 TEST(TubeEnds, RestAtTheGapOfAtoms) {
   Scene scene = in_line();
   const Prepared p = prepare(scene);
-  ASSERT_TRUE(p.topology.ends_meet);
+  ASSERT_TRUE(p.topology.groups.ends_meet);
   const Simulation s = start(scene, p);
   EXPECT_NEAR(s.forces().energy.terms, -0.470, 0.002);
   EXPECT_NEAR(s.forces().energy.vdw, 0, 1e-9) << "the law of endless tubes has no part in it";
