@@ -90,7 +90,8 @@ void add_verbs(CLI::App& app, Verbs& v) {
       ->check(number_within(Bounds::positive()));
   check->callback([&v] { v.code = check_shipped_command(v.check_shipped); });
 
-  CLI::App* friction = app.add_subcommand("friction", "Friction of two tubes side by side, from their atoms (minutes)");
+  CLI::App* friction =
+      app.add_subcommand("friction", "Friction of two tubes side by side, from their atoms (minutes)");
   FrictionArguments& f = v.friction;
   friction->add_option("set", f.first, "Parameter set of a tube: a file, or the name of a shipped one")->required();
   friction->add_option("other", f.second, "That of the other tube [default: the same]");
@@ -99,8 +100,11 @@ void add_verbs(CLI::App& app, Verbs& v) {
   friction->add_option("--registers", f.registers, "Turns of both tubes that the strengths are means of")
       ->capture_default_str()
       ->check(CLI::Range(4, 10000));
-  friction->add_option("--checks", f.checks, "Of these, how many LAMMPS relaxes")->capture_default_str()->check(CLI::Range(2, 100));
-  friction->add_option("--budget", f.budget_min, "Minutes, by which registers and checks are chosen; drag comes on top")
+  friction->add_option("--checks", f.checks, "Of these, how many LAMMPS relaxes")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 100));
+  friction
+      ->add_option("--budget", f.budget_min, "Minutes, by which registers and checks are chosen; drag comes on top")
       ->check(CLI::Range(0.5, 1e4))
       ->excludes("--registers")
       ->excludes("--checks");
@@ -138,7 +142,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("ropewalk-calibrate ") + version + " (" + git_id + ")");
   app.require_subcommand(0, 1);
   Verbs verbs;
-  verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command = command_line(argc, argv);
+  verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command =
+      command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
   add_describe(app, [] {

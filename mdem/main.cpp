@@ -106,7 +106,8 @@ void add_instructions(CLI::App* c, std::string& name, const char* of, const std:
 
 void add_device(CLI::App* c, std::string& name, const std::string& by_default) {
   c->add_option("--device", name,
-                "Device that moves the elements (a GPU pays, by estimate, from 20 000 elements on): gpu, opencl:TEXT for an OpenCL "
+                "Device that moves the elements (a GPU pays, by estimate, from 20 000 elements on): gpu, "
+                "opencl:TEXT for an OpenCL "
                 "device with TEXT in its name, c++ for its kernels on this processor, or none [default: " +
                     by_default + "]");
 }
@@ -496,7 +497,8 @@ void add_bench(CLI::App& app, Verbs& v) {
                                       "Time lmp-ropewalk on so many ranks against as many threads, by turns")
                             ->check(thread_range());
   c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
-  for (const char* other : {"--after", "--threads", "--instructions", "--device"}) lammps->excludes(c->get_option(other));
+  for (const char* other : {"--after", "--threads", "--instructions", "--device"})
+    lammps->excludes(c->get_option(other));
   CLI::Option* parts =
       c->add_option(
            "--parts", v.bench.parts,

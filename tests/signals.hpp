@@ -5,9 +5,9 @@
 
 namespace ropewalk::test {
 
-// Under nohup HUP is ignored, and in the background of a script INT; programs inherit that, and rightly keep HUP so.
-// As long as this lives no signal that the tests send is ignored or blocked, here and in programs started meanwhile.
-// Elsewhere tests leave it as it is, so that they outlive the terminal.
+// Under nohup HUP is ignored, and in the background of a script INT; programs inherit that, and rightly keep HUP
+// so. As long as this lives no signal that the tests send is ignored or blocked, here and in programs started
+// meanwhile. Elsewhere tests leave it as it is, so that they outlive the terminal.
 class SignalsOfATerminal {
  public:
   SignalsOfATerminal() {

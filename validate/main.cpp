@@ -77,8 +77,9 @@ void add_parametrize(CLI::App& app, Verbs& v) {
       ->capture_default_str();
   verb->add_option("--out", a.out, "Directory of sets, atoms and reports; what is finished in it is kept")
       ->capture_default_str();
-  verb->add_option("--friction", a.friction,
-                   "Friction from atoms: of each tube beside its like, of all pairs of tubes, or none; some minutes a pair")
+  verb->add_option(
+          "--friction", a.friction,
+          "Friction from atoms: of each tube beside its like, of all pairs of tubes, or none; some minutes a pair")
       ->check(CLI::IsMember({"like", "all", "none"}))
       ->capture_default_str();
   verb->add_option("--tier", a.tier, "Cases to run: full, or quick: without ropes and bundles")

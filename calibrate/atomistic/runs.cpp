@@ -60,14 +60,14 @@ void run_stage(RunContext& run, const std::string& name, const std::string& inpu
   run.lammps_seconds += seconds_since(start);
 }
 
-std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name,
-                                              std::size_t least, std::size_t most, std::size_t columns) {
+std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name, std::size_t least,
+                                              std::size_t most, std::size_t columns) {
   const std::string path = folder + "/" + name + ".dat";
   const auto fail = [&](const std::string& what) {
     refuse_full_disk(folder);
     throw LammpsError(
-        fmt::format("LAMMPS ({}/{}.in) {}; its input and log are in that folder, and the disk may be full",
-                    folder, name, what));
+        fmt::format("LAMMPS ({}/{}.in) {}; its input and log are in that folder, and the disk may be full", folder,
+                    name, what));
   };
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) fail("left no results");

@@ -90,8 +90,8 @@ std::string cell_commands(const Potential& potential, const std::string& data);
 void write_data(const RunContext& run, const std::string& name, const std::string& content);
 // Numbers that a run printed to folder/name.dat, `columns` per line. Throws LammpsError for fewer than `least`
 // lines or more than `most`.
-std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name,
-                                              std::size_t least, std::size_t most, std::size_t columns);
+std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name, std::size_t least,
+                                              std::size_t most, std::size_t columns);
 // Adds a warning if the residual forces of the minimiser (eV/nm) may stand for more than 1e-3 of the energy (eV).
 void check_convergence(RunContext& run, const std::string& what, double force, double energy);
 void run_stage(RunContext& run, const std::string& name, const std::string& input);

@@ -41,8 +41,8 @@ struct FitResult {
   std::string message;                 // one line for a person: the verdict and what to do
   std::vector<double> value;           // of all parameters, in their order
   std::vector<double> standard_error;  // 0 for a fixed parameter, NaN for one that the data do not determine
-  // Correlation matrix of the parameters' errors. A parameter that is fixed, or that the data do not determine, has 1 on
-  // the diagonal and 0 elsewhere.
+  // Correlation matrix of the parameters' errors. A parameter that is fixed, or that the data do not determine, has
+  // 1 on the diagonal and 0 elsewhere.
   std::vector<std::vector<double>> correlation;
   std::vector<std::string> at_bound;  // names
   std::vector<std::string> undetermined;

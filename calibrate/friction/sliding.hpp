@@ -34,8 +34,8 @@ struct RelaxedStrength {
 RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, Slip slip,
                                  const std::string& folder, const std::string& name, const LammpsOptions& options);
 
-// The mean of a force that also has the corrugation's period along its way `s` (nm), of samples every 0.1 ps. Blocks of
-// 1 ps say how many of them are independent.
+// The mean of a force that also has the corrugation's period along its way `s` (nm), of samples every 0.1 ps.
+// Blocks of 1 ps say how many of them are independent.
 Measured mean_without_period(const std::vector<double>& force, const std::vector<double>& s, double period);
 
 struct Drag {

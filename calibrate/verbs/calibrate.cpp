@@ -195,8 +195,8 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
   }
 }
 
-// Grades a new parameter set, from the text that its file will have. Throws InputError for a text that the other commands
-// would refuse, and for a contact law that writing and reading changes. The file is then not written.
+// Grades a new parameter set, from the text that its file will have. Throws InputError for a text that the other
+// commands would refuse, and for a contact law that writing and reading changes. The file is then not written.
 Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({"", 0, "--chirality"},

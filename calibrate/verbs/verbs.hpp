@@ -64,7 +64,8 @@ struct FrictionArguments {
   std::string out;            // empty: friction-N-M-N-M-POTENTIAL.toml in the current directory
   std::string keep;           // empty: LAMMPS's files are removed at the end
   int registers = 32, checks = 3;
-  double budget_min = 0;  // minutes of wall time; registers and checks are chosen to fill them. 0: both are as given
+  double budget_min =
+      0;                // minutes of wall time; registers and checks are chosen to fill them. 0: both are as given
   double drag_ps = 20;  // at each speed; 0: no drag
   bool json = false, force = false, quiet = false;
   LammpsOptions lammps;

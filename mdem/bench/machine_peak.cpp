@@ -97,8 +97,11 @@ double arithmetic_peak(int threads) {
 double transfer_peak(int threads) {
   // 128 MiB in each array, more than the caches hold, in as many pieces for each thread.
   const std::ptrdiff_t pieces = 64 * threads, piece = (std::ptrdiff_t{1} << 24) / pieces / 8 * 8;
-  const auto array = [&] { return std::unique_ptr<double[], decltype(&std::free)>(
-        static_cast<double*>(std::aligned_alloc(64, static_cast<std::size_t>(pieces * piece) * sizeof(double))), &std::free); };
+  const auto array = [&] {
+    return std::unique_ptr<double[], decltype(&std::free)>(
+        static_cast<double*>(std::aligned_alloc(64, static_cast<std::size_t>(pieces * piece) * sizeof(double))),
+        &std::free);
+  };
   const auto a = array(), b = array(), c = array();
   if (!a || !b || !c) throw std::bad_alloc();
     // Memory is placed near the thread that writes to it first.

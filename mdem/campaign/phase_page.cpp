@@ -83,8 +83,8 @@ std::string law_words(const Series& s) {
 // In words where the last part of the key is an observable too.
 ChartAxis axis_of_key(const std::string& key) {
   const std::string leaf = leaf_of(key);
-  const bool known = std::any_of(observables().begin(), observables().end(),
-                                 [&](const Observable& o) { return o.name == leaf; });
+  const bool known =
+      std::any_of(observables().begin(), observables().end(), [&](const Observable& o) { return o.name == leaf; });
   return known ? column_axis(leaf) : ChartAxis{leaf, "", false};
 }
 

@@ -141,7 +141,8 @@ void ThresholdSearch::go(int jobs, const std::function<void(const SweepPoint&, b
 void ThresholdSearch::write_line_of(const SweepPoint& p) const {
   const RunDirectory point = dir_.point(p.name);
   fs::create_directories(point.path);
-  write_file_atomically(point.file("threshold.csv"), thresholds_csv(sweep_, phase_points(dir_, sweep_, {p}, known_)));
+  write_file_atomically(point.file("threshold.csv"),
+                        thresholds_csv(sweep_, phase_points(dir_, sweep_, {p}, known_)));
 }
 
 // 0 where the run ended.

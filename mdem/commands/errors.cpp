@@ -95,15 +95,16 @@ int errors_command(const ErrorsArguments& a) {
                          }
                        },
                        [&failed, name](int status) {
-                         if (status != 0) failed.push_back(WIFEXITED(status) ? name : name + ": " + death_words(status));
+                         if (status != 0)
+                           failed.push_back(WIFEXITED(status) ? name : name + ": " + death_words(status));
                        }});
     }
   run_processes(tasks, jobs);
   if (!failed.empty())
-    throw std::runtime_error(
-        fmt::format("{} of {} runs did not finish ({}): a run that fails by itself is too sensitive for an error to be "
-                    "given; else give the same command again, which keeps those that are finished",
-                    failed.size(), tasks.size(), failed.front()));
+    throw std::runtime_error(fmt::format(
+        "{} of {} runs did not finish ({}): a run that fails by itself is too sensitive for an error to be "
+        "given; else give the same command again, which keeps those that are finished",
+        failed.size(), tasks.size(), failed.front()));
   std::vector<ErrorSource> described;
   for (const VariedNumber& s : sources) described.push_back(s.error);
   const RunErrors errors(dir.path + "/errors", described, correlation_of(sources, scene), log);

@@ -1,11 +1,10 @@
 // `report`: report.html from the files of a run, or a picture of its end.
-#include "report/svg.hpp"
-
 #include <fmt/format.h>
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "report/svg.hpp"
 #include "run/pages/run_views.hpp"
 
 namespace ropewalk {

@@ -39,9 +39,10 @@ void hand_over_to_sibling(char** argv) {
     const std::string program = find_program(sibling.program, std::string("ropewalk-") + sibling.program);
     give_back_cores();
     execvp(program.c_str(), sibling.keeps_verb ? argv : argv + 1);
-    throw InputError({"", 0, sibling.verb}, fmt::format("the program {} cannot be started", program),
-                     "after ./demo: .ci/install && cmake --preset release && cmake --build --preset release; or install "
-                     "the package ropewalk-calibrate");
+    throw InputError(
+        {"", 0, sibling.verb}, fmt::format("the program {} cannot be started", program),
+        "after ./demo: .ci/install && cmake --preset release && cmake --build --preset release; or install "
+        "the package ropewalk-calibrate");
   }
 }
 

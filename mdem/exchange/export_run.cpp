@@ -136,7 +136,8 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.time = s.state().time;
   header.work = s.work();
   header.dissipated = s.dissipated();
-  write_file_atomically(dir.first_state(), state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
+  write_file_atomically(dir.first_state(),
+                        state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
   write_file_atomically(dir.readme(), readme);
 }

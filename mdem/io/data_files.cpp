@@ -67,8 +67,7 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   const fs::path shipped = fs::path(data) / "parameters";
   for (const std::string& file : {name + ".toml", name})
     if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
-  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)),
-                   instead_of(name, data));
+  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), instead_of(name, data));
 }
 
 }  // namespace ropewalk

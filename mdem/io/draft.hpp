@@ -52,7 +52,8 @@ class Draft {
   bool replaced_ = false;
 };
 
-// Makes a draft directory. The caller removes it; without_part() of io/files.hpp recognises one of a killed process.
+// Makes a draft directory. The caller removes it; without_part() of io/files.hpp recognises one of a killed
+// process.
 std::string new_draft_folder(const std::string& path);
 // Renames a whole file or directory to the name that it was made for.
 void rename_whole(const std::string& draft, const std::string& path);

@@ -1,7 +1,8 @@
 // The file of the friction of two kinds of tubes, as `ropewalk calibrate friction` writes it.
 //
 //   [meta]         format = "ropewalk-friction-1", name, chirality_a, chirality_b, potential
-//   [friction]     the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength, elastic_slip,
+//   [friction]     the law of sim/forces/terms/dry_friction.hpp: strength, spin_strength, end_strength,
+//   elastic_slip,
 //                  drag
 //   [register]     how the strengths spread over the turns of the tubes
 //   [pressure], [crossing]   what changes them
@@ -46,8 +47,8 @@ std::vector<std::string> strange_friction_files(const std::vector<std::string>& 
 // From names, quantities and provenance, below `comment`.
 std::string friction_text(const PairFriction& friction, const std::string& comment);
 
-// The friction of this name: a file NAME or NAME.toml in one of the folders, a copy friction-K.toml there which has it
-// as its meta.name, or a shipped one. Throws InputError at `place`.
+// The friction of this name: a file NAME or NAME.toml in one of the folders, a copy friction-K.toml there which has
+// it as its meta.name, or a shipped one. Throws InputError at `place`.
 PairFriction find_friction(const std::string& name, const std::vector<std::string>& folders,
                            const InputError::Place& place);
 
@@ -55,9 +56,9 @@ PairFriction find_friction(const std::string& name, const std::vector<std::strin
 // if both are armchair tubes, both are zigzag tubes, or both have the same chirality.
 std::string kind_of_pair(Chirality a, Chirality b);
 
-// The friction of these tubes, from a file friction-*.toml in one of the folders or a shipped one; where there is none,
-// that of the pair of the same kind whose radii are nearest. An estimate then: its tubes are others. Throws InputError
-// at `place` if no pair of this kind is there.
+// The friction of these tubes, from a file friction-*.toml in one of the folders or a shipped one; where there is
+// none, that of the pair of the same kind whose radii are nearest. An estimate then: its tubes are others. Throws
+// InputError at `place` if no pair of this kind is there.
 PairFriction friction_between(Chirality a, Chirality b, const std::vector<std::string>& folders,
                               const InputError::Place& place);
 

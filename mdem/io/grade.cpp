@@ -136,7 +136,8 @@ double line_fit_error(const ParameterSet& set) {
   const Quantity* q = find_quantity(set, "contact.line.K");
   const std::string words = "fit error ";
   const std::size_t at = q ? q->note.find(words) : std::string::npos;
-  return at == std::string::npos ? -1 : leading_number(std::string_view(q->note).substr(at + words.size())).value_or(0);
+  return at == std::string::npos ? -1
+                                 : leading_number(std::string_view(q->note).substr(at + words.size())).value_or(0);
 }
 
 double universal_error(const ParameterSet& set) {

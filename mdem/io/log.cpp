@@ -76,9 +76,10 @@ double potential_energy(const LogRow& row) {
 std::string damping_words(const LogRow& row) {
   const double lost = row["dissipated_eV"], damping = row["damping_eV"];
   if (!(lost > 0.01 * std::fabs(row["work_eV"])) || !(damping > 0.1 * lost)) return "";
-  return fmt::format("Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that are lost: trust "
-                     "where the rope rests, not how it came there, nor which of several states of rest it chose.",
-                     100 * damping / lost, lost);
+  return fmt::format(
+      "Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that are lost: trust "
+      "where the rope rests, not how it came there, nor which of several states of rest it chose.",
+      100 * damping / lost, lost);
 }
 
 const LogRow* strongest_row(const std::vector<LogRow>& log) {

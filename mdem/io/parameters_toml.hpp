@@ -26,7 +26,8 @@ std::string tube_name(const ParameterSet& set);
 class TomlTable;
 struct Bounds;
 // One number `key` of a section with its unit, standard error and origin; it must have this unit.
-Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds);
+Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit,
+                       const Bounds& bounds);
 std::string quantity_text(const Quantity& q, const std::string& key);
 // The five rows of the universal law, as text and read from their table.
 void read_universal_rows(const TomlTable& table, UniversalLine& law);

@@ -11,7 +11,8 @@ namespace ropewalk {
 bool has_control_character(std::string_view text);
 bool is_utf8(std::string_view text);
 
-// The number that a text begins with, behind spaces: with a decimal point, in every locale. `length`: of what was read.
+// The number that a text begins with, behind spaces: with a decimal point, in every locale. `length`: of what was
+// read.
 std::optional<double> leading_number(std::string_view text, std::size_t* length = nullptr);
 
 // The text with control characters as escapes, cut to fit into a line of a message.

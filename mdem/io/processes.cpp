@@ -23,7 +23,8 @@ namespace {
 
 pid_t start(const ProcessTask& task, int jobs) {
   std::fflush(nullptr);
-  // A child of GCC's OpenMP waits for ever for the threads of its parent, which it does not have: there must be none.
+  // A child of GCC's OpenMP waits for ever for the threads of its parent, which it does not have: there must be
+  // none.
   omp_pause_resource_all(omp_pause_hard);
   const pid_t parent = getpid(), child = fork();
   if (child < 0) throw std::runtime_error(fmt::format("no process can be started: {}", std::strerror(errno)));

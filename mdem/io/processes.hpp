@@ -14,10 +14,11 @@ struct ProcessTask {
   std::function<void(int status)> finish;  // here, with the status of waitpid
 };
 
-// At most `jobs` at a time, in their order. Threads of a task share the cores with the others'. Once `stop` is not 0
-// (a signal's handler sets it) those at work get SIGTERM and no other is started. Throws std::runtime_error where no
-// process can be started.
-void run_processes(const std::vector<ProcessTask>& tasks, int jobs, const volatile std::sig_atomic_t* stop = nullptr);
+// At most `jobs` at a time, in their order. Threads of a task share the cores with the others'. Once `stop` is not
+// 0 (a signal's handler sets it) those at work get SIGTERM and no other is started. Throws std::runtime_error where
+// no process can be started.
+void run_processes(const std::vector<ProcessTask>& tasks, int jobs,
+                   const volatile std::sig_atomic_t* stop = nullptr);
 
 // Another program, looked for in PATH; the first word is its name. Waits for its end.
 enum class ProgramEnd { missing, failed, well };

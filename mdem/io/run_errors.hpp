@@ -59,8 +59,8 @@ class RunErrors {
   std::vector<std::pair<std::vector<LogRow>, std::vector<LogRow>>> runs_;  // plus and minus, as long as log_
 };
 
-// How far a value still moves at the end of a log: the largest distance of its last rows from a straight line through
-// them. The last rows are a tenth of the log, at least eight. 0 for a log of fewer than four rows.
+// How far a value still moves at the end of a log: the largest distance of its last rows from a straight line
+// through them. The last rows are a tenth of the log, at least eight. 0 for a log of fewer than four rows.
 double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
 
 // Whether the parameters act on a value at all: its error is more than rounding beside the largest value in the

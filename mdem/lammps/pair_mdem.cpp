@@ -43,7 +43,8 @@ void PairMdem::settings(int count, char** words) {
     refuse(lmp, "the scene's contact is \"" + model_->law + "\", not \"" + law_ + "\"",
            "write: pair_style mdem/" + model_->law + " DIR, or export the scene anew");
   if (plain && !model_->interaction.terms.empty())
-    refuse(lmp, "the scene has \"" + model_->interaction.terms.front()->name() + "\", which only the engine computes",
+    refuse(lmp,
+           "the scene has \"" + model_->interaction.terms.front()->name() + "\", which only the engine computes",
            "write: " + name + " DIR");
   engine_ = plain ? nullptr : std::make_unique<RankEngine>(lmp, model_);
   no_virial_fdotr_compute = engine_ ? 1 : 0;  // LAMMPS's forces then are those of bonds and damping as well

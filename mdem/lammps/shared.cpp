@@ -1,8 +1,7 @@
 #include "lammps/shared.hpp"
 
-#include <numeric>
-
 #include <map>
+#include <numeric>
 
 #include "bond.h"
 #include "domain.h"

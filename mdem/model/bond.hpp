@@ -19,8 +19,8 @@
 // Limits: the torque of twist peaks at phi = 90 degrees and is zero at 180; beyond the peak a bond slips, and the
 // simulator stops before it does.
 //
-// The anharmonic bond has the energy per length of anharmonic.hpp, times a, and shear that a bond which is part of a
-// circle does not feel:
+// The anharmonic bond has the energy per length of anharmonic.hpp, times a, and shear that a bond which is part of
+// a circle does not feel:
 //
 //   stretch, twist, bend   of the strain of the arc  e = D/a (1 + (1 - c)/12) - 1,
 //                          of the twist  tau = phi/a  and of the curvature  kappa = delta/a
@@ -89,8 +89,8 @@ inline BondForce bond_energy_and_gradient(const BondStiffness& k, double a, cons
   const forms::Vec r = plain(separation);
   const double share = shear_share(k, a);
   const forms::BondAction f = k.anharmonic.used
-                                 ? forms::anharmonic_bond(&k, share, a, r, fi, fj, bond_twist_angle(fi, fj))
-                                 : forms::harmonic_bond(&k, share, a, r, fi, fj);
+                                  ? forms::anharmonic_bond(&k, share, a, r, fi, fj, bond_twist_angle(fi, fj))
+                                  : forms::harmonic_bond(&k, share, a, r, fi, fj);
   return {{f.energy.stretch, f.energy.shear, f.energy.bend, f.energy.twist},
           vector(f.force_j),
           vector(f.torque_i),
@@ -102,8 +102,8 @@ inline BondEnergy bond_energy(const BondStiffness& k, double a, const Vector3& s
   return bond_energy_and_gradient(k, a, separation, i, j).energy;
 }
 
-// The harmonic bond that is as stiff as an anharmonic one anywhere on the edges of its window, where it is stiffest:
-// each of its stiffnesses is a polynomial of second degree.
+// The harmonic bond that is as stiff as an anharmonic one anywhere on the edges of its window, where it is
+// stiffest: each of its stiffnesses is a polynomial of second degree.
 inline BondStiffness stiffest_in_window(const BondStiffness& k) {
   const Anharmonic& h = k.anharmonic;
   BondStiffness out = k;

@@ -1,5 +1,6 @@
-// What a function expects of its caller, and ensures where it returns. Conditions are checked in builds without NDEBUG
-// (preset asan); a broken one ends the program with its place. Elsewhere they are not evaluated and cost nothing.
+// What a function expects of its caller, and ensures where it returns. Conditions are checked in builds without
+// NDEBUG (preset asan); a broken one ends the program with its place. Elsewhere they are not evaluated and cost
+// nothing.
 //
 // A contract is about the code that calls. What a user writes is checked in every build, by InputError.
 #pragma once

@@ -21,7 +21,8 @@
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
 //               off
 //   [provenance] optional strings: what the set was made from and by
-//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of the
+//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of
+//   the
 //               standard errors of these quantities; quantities in none of them are independent
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one

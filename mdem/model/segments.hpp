@@ -28,8 +28,8 @@ inline double squared_segment_distance(const Vector3& separation, const Vector3&
 // beside it:
 //   max(|d.n_i| - ahead, 0)^2 + d^2 - (d.n_i)^2 - beside |d.n_j - (d.n_i)(n_i.n_j)|
 // with d the separation, ahead = half_i + half_j and beside = 2 half_j.
-inline double min_squared_distance(const Vector3& separation, const Vector3& n_i, const Vector3& n_j,
-                                     double ahead, double beside) {
+inline double min_squared_distance(const Vector3& separation, const Vector3& n_i, const Vector3& n_j, double ahead,
+                                   double beside) {
   const double along = separation.dot(n_i), from = std::max(std::fabs(along) - ahead, 0.0);
   const double tilted = separation.dot(n_j) - along * n_i.dot(n_j);
   return from * from + separation.squaredNorm() - along * along - beside * std::fabs(tilted);

@@ -153,8 +153,8 @@ std::vector<double> tensions(const Topology& topology, const State& state, int t
       out.push_back(0);
       continue;
     }
-    const BondForce f = bond_energy_and_gradient(
-        type.bond, type.element_length, d, frame_of(state.orientation[i]), frame_of(state.orientation[j]));
+    const BondForce f = bond_energy_and_gradient(type.bond, type.element_length, d, frame_of(state.orientation[i]),
+                                                 frame_of(state.orientation[j]));
     out.push_back(-f.force_j.dot(d.normalized()));
   }
   return out;

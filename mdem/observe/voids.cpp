@@ -22,7 +22,6 @@ struct Measure {
   double circumradius = 0, area = 0;
 };
 
-
 Measure measure(const Triangle& t, const std::vector<Vector3>& points, const std::vector<Vector3>& tangents) {
   const Vector3 axis = (tangents[t[0]] + tangents[t[1]] + tangents[t[2]]).normalized();
   const Vector3 u = normal_part(points[t[1]] - points[t[0]], axis);

@@ -23,8 +23,8 @@ namespace ropewalk {
 
 struct Voids {
   int count = 0;
-  // nm^2, above that of as many packed triangles with the mean side of the void, at most the spacing; one missing tube:
-  // sqrt(3)/2 spacing^2. Never negative.
+  // nm^2, above that of as many packed triangles with the mean side of the void, at most the spacing; one missing
+  // tube: sqrt(3)/2 spacing^2. Never negative.
   double area = 0;
 };
 

@@ -120,7 +120,8 @@ class Observed {
     if (m_.interaction.has_contact() && m_.topology.tubes() > 1)
       now["spacing"] = tube_spacing(m_.topology, state, shells_);
     if (m_.topology.tubes() > 2) {
-      const RopeObservation o = observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
+      const RopeObservation o =
+          observe(m_.topology, state, shells_, validities(m_.scene, m_.topology), 0, m_.spacing);
       now["beta_deg"] = o.beta / units::degree;
       now["geometric_twist_deg"] = o.geometric_twist / units::degree;
       now["Q"] = o.middle.charge;

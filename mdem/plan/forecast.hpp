@@ -33,9 +33,9 @@ double expected_shock(const Scene& scene, const Prepared& prepared);
 //   M = sum(GJ) phi + sum(EA rho^4) phi^3/2
 // at the twist phi per length, with the distance rho of a tube from the axis; where the length is not held, the
 // square of the mean of rho^2 is taken off. The estimate is an upper one: runs show 0.3 to 0.8 of it, since
-// damping, rounded corners and the faster twist of each tube about its own axis weaken the wave. A slice of an endless
-// rope gets its twist at both ends, each of which turns at w/2 against the middle: the torque of the wave is the same.
-// Runs of 19 tubes show 0.2 of it.
+// damping, rounded corners and the faster twist of each tube about its own axis weaken the wave. A slice of an
+// endless rope gets its twist at both ends, each of which turns at w/2 against the middle: the torque of the wave
+// is the same. Runs of 19 tubes show 0.2 of it.
 struct QuasiStatic {
   bool slice = false;
   double travel = 0;  // ps, from end to end of the untwisted rope

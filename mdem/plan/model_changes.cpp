@@ -47,8 +47,7 @@ ModelChange mass_change(int times) {
 ModelChange relaxation() {
   return {"mode", "relaxed at once", [](PlannedScene& w) {
             w.set("run", "mode", "\"relax\"", "only the end is asked for");
-            for (const char* key : {"duration_ps", "integrator", "mass_scale"})
-              w.take_away("run", key);
+            for (const char* key : {"duration_ps", "integrator", "mass_scale"}) w.take_away("run", key);
           }};
 }
 

@@ -23,8 +23,8 @@ struct Outcome {
   std::map<std::string, Value> of;
 };
 
-// The outcome of a log with at least one row, for these observables. Throws std::invalid_argument for a name that is
-// neither "energy" nor a column of the log.
+// The outcome of a log with at least one row, for these observables. Throws std::invalid_argument for a name that
+// is neither "energy" nor a column of the log.
 Outcome outcome_of(const std::vector<LogRow>& log, const std::vector<std::string>& observables, bool relaxed);
 
 // The observables that are compared where the user names none.

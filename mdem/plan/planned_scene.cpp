@@ -52,8 +52,7 @@ void PlannedScene::start_from_default() {
   for (const Key& k :
        {Key{"contact", "cutoff_nm", contact.cutoff > 0}, Key{"contact", "nodes_per_element", contact.nodes > 0},
         Key{"contact", "precision", contact.precision.has_value()},
-        Key{"run", "integrator", run.stepping.runge_kutta},
-        Key{"run", "time_step_fs", run.time_step > 0}}) {
+        Key{"run", "integrator", run.stepping.runge_kutta}, Key{"run", "time_step_fs", run.time_step > 0}}) {
     if (k.typed) remark(fmt::format("{}.{}: left to the program first", k.table, k.key));
     take_away(k.table, k.key);
   }

@@ -13,7 +13,8 @@ namespace {
 // Frames by number; the last one that was read is kept.
 class FrameFile {
  public:
-  FrameFile(const std::string& path, const SceneHandle& scene) : model_(scene.model()), reader_(open_frames(path)) {}
+  FrameFile(const std::string& path, const SceneHandle& scene)
+      : model_(scene.model()), reader_(open_frames(path)) {}
 
   long size() {
     if (!size_) size_ = static_cast<long>(reader_->count(model_->prepared.topology));

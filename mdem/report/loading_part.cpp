@@ -113,8 +113,8 @@ std::map<double, std::vector<std::size_t>> rings(const std::vector<double>& radi
 
 std::string tension_figure(const ReportInput& in, Figures& figures) {
   const ReportLoading& last = in.loading.back();
-  // The figure averages the tension over the tubes of a ring, bond by bond. Tubes with different numbers of bonds have no
-  // such average.
+  // The figure averages the tension over the tubes of a ring, bond by bond. Tubes with different numbers of bonds
+  // have no such average.
   for (const std::vector<double>& tube : last.tension_nN)
     if (tube.size() != last.tension_nN.front().size()) return "";
   const std::string title = "Tension along the tubes";

@@ -7,11 +7,12 @@
 
 namespace ropewalk {
 
-// Per-element energies, bending moment and twist of a state, for frames and pictures. `bonded`: the tubes where they
-// have not broken (Simulation::tubes_now).
+// Per-element energies, bending moment and twist of a state, for frames and pictures. `bonded`: the tubes where
+// they have not broken (Simulation::tubes_now).
 ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state,
                                const Topology& bonded);
-inline ElementColours element_colours(const Topology& topology, const Interaction& interaction, const State& state) {
+inline ElementColours element_colours(const Topology& topology, const Interaction& interaction,
+                                      const State& state) {
   return element_colours(topology, interaction, state, topology);
 }
 

@@ -24,9 +24,8 @@ std::optional<Energies> energies_of_period(const Simulation& simulation) {
       ++own;
       out.vdw += contacts[i];
       if (e + 1 == now.tube_begin[t + 1]) continue;
-      const BondEnergy bond =
-          bond_energy(type.bond, type.element_length, Vector3(s.position[j] - s.position[i]),
-                      frame_of(s.orientation[i]), frame_of(s.orientation[j]));
+      const BondEnergy bond = bond_energy(type.bond, type.element_length, Vector3(s.position[j] - s.position[i]),
+                                          frame_of(s.orientation[i]), frame_of(s.orientation[j]));
       out.stretch += bond.stretch, out.shear += bond.shear, out.bend += bond.bend, out.twist += bond.twist;
     }
   }

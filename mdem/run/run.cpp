@@ -99,7 +99,8 @@ RunResult Run::stopped_at_limit() {
 
 RunResult Run::stopped(RunEnd end) {
   parts_.checkpoints.write_results();
-  const std::string reason = fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
+  const std::string reason =
+      fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
   parts_.files.try_again();
   return result(end, reason);

@@ -18,8 +18,8 @@ class RunListener {
   virtual void tell_detail(const std::string&) {}
   // The input is good, and the first file is about to be written.
   virtual void before_files() {}
-  // Names the source of a request to stop, such as "by signal 2"; empty: there is no request. On a request the run saves
-  // its state and ends.
+  // Names the source of a request to stop, such as "by signal 2"; empty: there is no request. On a request the run
+  // saves its state and ends.
   virtual std::string asked_to_stop() { return ""; }
 
   // The loop begins. `total`: 0 if the end is not known (relaxation).

@@ -156,10 +156,10 @@ double seconds_of_a_run(const std::string& text, const std::string& path, std::i
   };
   run_processes({{work, [&](int status) { ended = WIFEXITED(status) && WEXITSTATUS(status) == 0; }}}, 1);
   if (!ended)
-    throw std::runtime_error(
-        fmt::format("a short run of the scene, to see what it takes, failed in {}: see whether there is room (TMPDIR "
-                    "names another place), and try the scene with `ropewalk run`",
-                    scratch.path()));
+    throw std::runtime_error(fmt::format(
+        "a short run of the scene, to see what it takes, failed in {}: see whether there is room (TMPDIR "
+        "names another place), and try the scene with `ropewalk run`",
+        scratch.path()));
   return leading_number(read_file(seconds)).value_or(0);
 }
 

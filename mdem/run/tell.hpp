@@ -1,4 +1,5 @@
-// Messages of a program on the way. It goes on where nobody can read it: on a full disk, to a reader that went away.
+// Messages of a program on the way. It goes on where nobody can read it: on a full disk, to a reader that went
+// away.
 #pragma once
 
 #include <string>

@@ -216,7 +216,8 @@ BuiltScene build(Scene& scene) {
   if (scene.has_ends(Drive::Ends::endless)) {
     const double reach = interaction_of(scene, out.law).cutoff() + scene.source->slides();
     for (const auto& drive : scene.drives)
-      out.topology.groups.images = std::max(out.topology.groups.images, drive->images(reach / scene.element_length));
+      out.topology.groups.images =
+          std::max(out.topology.groups.images, drive->images(reach / scene.element_length));
   }
   Random random(scene.start.seed);
   scene.source->place(scene, out.spacing, random, out.topology, out.state);

@@ -11,8 +11,8 @@
 
 #include "io/plain_text.hpp"
 #include "scene/bounds.hpp"
-#include "scene/laws/contact_law_kind.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/refine.hpp"
@@ -25,7 +25,8 @@ toml::table& table_of(toml::table& top, const std::string& name) {
   return *top[name].as_table();
 }
 
-// The numbers of the elements that take the places of the listed ones. Counted from the end, -1 stays and -2 becomes -3.
+// The numbers of the elements that take the places of the listed ones. Counted from the end, -1 stays and -2
+// becomes -3.
 toml::array in_the_same_places(const toml::array& typed) {
   toml::array elements;
   for (const auto& e : typed) {
@@ -42,8 +43,9 @@ bool numbers_elements(const SceneTable& keys, const toml::table& table) {
   });
 }
 
-// Rewrites a key for elements of half the length, `elements` of them in a tube. Keys that do not depend on the elements,
-// and keys that the program chooses, stay unwritten. `numbered`: the table acts on elements that it numbers.
+// Rewrites a key for elements of half the length, `elements` of them in a tube. Keys that do not depend on the
+// elements, and keys that the program chooses, stay unwritten. `numbered`: the table acts on elements that it
+// numbers.
 void refine_key(const SceneKey& key, const Scene& scene, int elements, bool numbered, toml::table& table) {
   if (key.tube_size == SceneKey::TubeSize::length)
     table.insert_or_assign(key.key, elements * 0.5 * scene.element_length);
@@ -129,7 +131,8 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
   for (const auto& drive : scene.drives)
     if (const std::string why = drive->why_not_split(); !why.empty()) return why;
   if (!scene.memory.broken.empty()) return "tubes of the state have broken";
-  if (!topology.groups.strand_begin.empty()) return "tubes end inside of the rope, at places that follow from its elements";
+  if (!topology.groups.strand_begin.empty())
+    return "tubes end inside of the rope, at places that follow from its elements";
   const ContactLawKind* law = contact_law_kind(scene.contact.law);
   if (law && !law->any_element_length)
     return fmt::format("law \"{}\" holds for elements of {:.4g} nm alone", law->name,

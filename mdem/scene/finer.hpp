@@ -1,11 +1,12 @@
 // A scene with elements of half the length: what a run goes on with when its elements have become too long.
 //
-// If drives hold single elements, another element comes between every two (Splitting::between). The held elements then keep
-// their centres, the tubes keep their free length (free_length()), and each load on an element keeps its place and size.
-// In other scenes every element is split in two, and the tubes keep their length. Lengths in the finer scene are whole elements. Each other key
-// states its dependence on the element length (SceneKey::length_power): a load on all elements divides among them, nodes
-// of the line law keep their spacing, tubes their range of self-exclusion, and dissipation its value per length of tube
-// (scene/tables/damping.cpp). A typed time step keeps its share of the stability limit.
+// If drives hold single elements, another element comes between every two (Splitting::between). The held elements
+// then keep their centres, the tubes keep their free length (free_length()), and each load on an element keeps its
+// place and size. In other scenes every element is split in two, and the tubes keep their length. Lengths in the
+// finer scene are whole elements. Each other key states its dependence on the element length
+// (SceneKey::length_power): a load on all elements divides among them, nodes of the line law keep their spacing,
+// tubes their range of self-exclusion, and dissipation its value per length of tube (scene/tables/damping.cpp). A
+// typed time step keeps its share of the stability limit.
 #pragma once
 
 #include <string>

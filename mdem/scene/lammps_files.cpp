@@ -167,7 +167,8 @@ constexpr std::array<const char*, 4> of_a_term = {"term", "lost", "drag", "event
 
 // Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
-  std::vector<std::string> names = {"time", "stretch", "shear", "bend", "twist", "vdw", "kinetic", "work", "dissipated"};
+  std::vector<std::string> names = {"time", "stretch", "shear", "bend",      "twist",
+                                    "vdw",  "kinetic", "work",  "dissipated"};
   for (int k = 1; k <= terms; ++k)
     for (const char* number : of_a_term) names.push_back(fmt::format("{}{}", number, k));
   return names;
@@ -268,8 +269,8 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     r.terms.resize(terms);
     r.accounts.resize(terms);
     std::size_t column = 0;
-    std::vector<double*> values = {&r.step, &r.time, &r.stretch, &r.shear,   &r.bend,
-                                   &r.twist, &r.vdw, &r.kinetic, &r.work, &r.dissipated};
+    std::vector<double*> values = {&r.step,  &r.time, &r.stretch, &r.shear, &r.bend,
+                                   &r.twist, &r.vdw,  &r.kinetic, &r.work,  &r.dissipated};
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
@@ -279,7 +280,8 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
         throw InputError({dir.rows(), number, ""}, "has fewer numbers than the title names",
                          "take the line out if LAMMPS was killed while it wrote it");
       if (!std::isfinite(*value))
-        throw InputError({dir.rows(), number, column < row_columns.size() ? row_columns[column].name : "term"}, "is not finite", "run LAMMPS again");
+        throw InputError({dir.rows(), number, column < row_columns.size() ? row_columns[column].name : "term"},
+                         "is not finite", "run LAMMPS again");
       ++column;
     }
     if (!(r.step >= 0 && r.step < most_steps) || r.step != std::floor(r.step))

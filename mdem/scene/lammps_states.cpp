@@ -122,7 +122,8 @@ std::vector<double> memory_in(const std::string& path, const StateInFile& state)
   for (double& number : memory) {
     if (!read(file, number)) throw file_error(path, "cannot be read", EIO);
     if (!(std::fabs(number) <= largest_number))
-      throw InputError({path, 0, ""}, "holds a number that is not finite in the memory of a force term", ask_for_export);
+      throw InputError({path, 0, ""}, "holds a number that is not finite in the memory of a force term",
+                       ask_for_export);
   }
   return memory;
 }

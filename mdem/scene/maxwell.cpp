@@ -27,7 +27,8 @@ Vector3 centre_of_mass(const Topology& topology, const State& state) {
   return sum / total_mass(topology);
 }
 
-// The inertia of all elements about their centre of mass; never singular, since every element has inertia of its own.
+// The inertia of all elements about their centre of mass; never singular, since every element has inertia of its
+// own.
 Eigen::Matrix3d inertia_tensor(const Topology& topology, const State& state) {
   const Vector3 centre = centre_of_mass(topology, state);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

@@ -5,8 +5,8 @@
 
 namespace ropewalk {
 
-// Bytes of a run of `elements` elements at its largest, which is where it writes its report. Ropes of 200 000 elements
-// take 2.2 kB each by either contact law, and 2.7 kB with the widest margin of the neighbour list.
+// Bytes of a run of `elements` elements at its largest, which is where it writes its report. Ropes of 200 000
+// elements take 2.2 kB each by either contact law, and 2.7 kB with the widest margin of the neighbour list.
 inline double memory_needed(double elements) { return 2500.0 * elements; }
 
 // Bytes that this process may take: of the machine, or less where a limit is set on it.

@@ -75,13 +75,13 @@ using LimitOptions = std::array<std::optional<double>, limit_count>;
 struct Scene {
   std::string name;
   std::string path;
-  std::string text;                // the file as read, for the copy in the run directory
-  std::string hash;                // xxh64 of text, hex
-  std::vector<ParameterSet> sets;  // of the tube types; never empty
-  std::vector<int> tube_types;     // of each tube, an index of `sets`; empty: all are of the first, or drawn:
+  std::string text;                 // the file as read, for the copy in the run directory
+  std::string hash;                 // xxh64 of text, hex
+  std::vector<ParameterSet> sets;   // of the tube types; never empty
+  std::vector<int> tube_types;      // of each tube, an index of `sets`; empty: all are of the first, or drawn:
   std::vector<double> type_shares;  // of each set, the part of the tubes that are of it; empty: tube_types holds
-  double element_length = 0;       // nm
-  std::string kind;                // the table of its source: "rope"; empty where it was not read from a file
+  double element_length = 0;        // nm
+  std::string kind;                 // the table of its source: "rope"; empty where it was not read from a file
   std::shared_ptr<const Source> source;
   // Set by build(). Random numbers of the motion are others for another lineage (lineage_key): a scene that goes on
   // from the end of another one has other noise.

@@ -17,9 +17,9 @@ struct SceneKey {
   // For scenes with elements of another length: the value goes as this power of it, up to `most`.
   int length_power = 0;
   double most = std::numeric_limits<double>::infinity();
-  bool whole = false;             // an integer, rounded up
-  // "all", "ends" or a list of elements. A key of the same table that goes as the length of an element is what each of
-  // them takes of a whole, which matters for "all" alone: the others stay where they are.
+  bool whole = false;  // an integer, rounded up
+  // "all", "ends" or a list of elements. A key of the same table that goes as the length of an element is what each
+  // of them takes of a whole, which matters for "all" alone: the others stay where they are.
   bool numbers_elements = false;
   bool counts_held = false;  // elements at an end of a tube that are held as one, between the same two places
   // Whether it is the size of every tube of the scene.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "scene/kinds/scene_kind.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/kinds/scene_kind.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {

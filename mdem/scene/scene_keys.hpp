@@ -12,7 +12,8 @@ std::vector<SceneKey> scene_keys();
 
 // A table of all of them for the program's help.
 std::string scene_key_help();
-// Of the scene's table of this name, as in "links" or "[links]", or of all keys of this name; empty: there are none.
+// Of the scene's table of this name, as in "links" or "[links]", or of all keys of this name; empty: there are
+// none.
 std::string scene_key_help(const std::string& topic);
 
 }  // namespace ropewalk

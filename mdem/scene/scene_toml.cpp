@@ -6,9 +6,9 @@
 
 #include "io/files.hpp"
 #include "io/toml_table.hpp"
+#include "scene/drive_kind.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
-#include "scene/drive_kind.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/tables/tables.hpp"
 

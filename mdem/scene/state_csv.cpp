@@ -350,7 +350,7 @@ class StateReader {
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   std::size_t columns_here_ = 0;
-  bool stated_ = false;  // the length, by the file
+  bool stated_ = false;      // the length, by the file
   std::vector<int> broken_;  // elements
   std::vector<int> joined_;  // tubes of the file that are the next part of a broken one
 };
@@ -393,8 +393,9 @@ std::string state_csv(const Topology& topology, const State& s, const StateNotes
   std::string text = fmt::format("{}\n# {}{}\n", whole_header, length_words, topology.types.front().element_length);
   if (topology.types.size() > 1) text += fmt::format("# {}{}\n", types_words, fmt::join(topology.tube_type, ","));
   if (!topology.groups.strand_begin.empty())
-    text += fmt::format("# {}{}\n", strands_words,
-                        fmt::join(topology.groups.strand_begin.begin(), topology.groups.strand_begin.end() - 1, ","));
+    text +=
+        fmt::format("# {}{}\n", strands_words,
+                    fmt::join(topology.groups.strand_begin.begin(), topology.groups.strand_begin.end() - 1, ","));
   if (!topology.groups.rope_begin.empty())
     text += fmt::format("# {}{}\n", ropes_words,
                         fmt::join(topology.groups.rope_begin.begin(), topology.groups.rope_begin.end() - 1, ","));

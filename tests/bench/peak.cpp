@@ -4,9 +4,9 @@
 #define VEC_SOURCE "bench/peak.cpp"
 #include "sim/vectors/each_set-inl.hpp"
 //
-#include "sim/vectors/operations-inl.hpp"
-
 #include <cstddef>
+
+#include "sim/vectors/operations-inl.hpp"
 
 VEC_BEFORE_NAMESPACE();
 namespace ropewalk::bench::VEC_SET {
@@ -78,7 +78,10 @@ BENCHMARK(PeakLookUp);
 // Argument: KiB of the three arrays together. Counts 24 bytes per entry, as STREAM does.
 void PeakTriad(benchmark::State& bench) {
   const auto n = static_cast<std::size_t>(bench.range(0)) * 1024 / 24 / 8 * 8;
-  const auto array = [&] { return std::unique_ptr<double[], decltype(&std::free)>(static_cast<double*>(std::aligned_alloc(64, n * sizeof(double))), &std::free); };
+  const auto array = [&] {
+    return std::unique_ptr<double[], decltype(&std::free)>(
+        static_cast<double*>(std::aligned_alloc(64, n * sizeof(double))), &std::free);
+  };
   const auto a = array(), b = array(), c = array();
   std::fill(a.get(), a.get() + n, 1.0);
   std::fill(b.get(), b.get() + n, 2.0);

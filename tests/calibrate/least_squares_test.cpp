@@ -87,8 +87,8 @@ TEST(LeastSquares, NoisyPolynomialIsTheLinearRegression) {
   EXPECT_THAT(f.undetermined, IsEmpty());
 }
 
-// Intercept and slope of a straight line through points at x = 1, 2, 3 have the covariance s^2 (X^T X)^-1, so that their
-// correlation is -sum x / sqrt(n sum x^2).
+// Intercept and slope of a straight line through points at x = 1, 2, 3 have the covariance s^2 (X^T X)^-1, so that
+// their correlation is -sum x / sqrt(n sum x^2).
 TEST(LeastSquares, CorrelationIsThatOfTheLinearRegression) {
   const std::vector<double> y = {1.1, 1.9, 3.2};
   const auto residuals = [&](const std::vector<double>& p, std::vector<double>& r) {

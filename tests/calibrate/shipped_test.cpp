@@ -121,8 +121,7 @@ TEST(ShippedSets, AnharmonicBondsHaveTheEnergiesOfTheAtoms) {
       const double turn = curvature * a, chord = turn > 0 ? 2 / curvature * std::sin(0.5 * turn) : a;
       const Quaternion half(Eigen::AngleAxisd(0.5 * turn, Vector3::UnitY()));
       const Quaternion j = half * Quaternion(Eigen::AngleAxisd(twist * a, Vector3::UnitZ()));
-      return bond_energy(bond, a, Vector3(0, 0, (1 + strain) * chord), frame_of(half.conjugate()),
-                                 frame_of(j))
+      return bond_energy(bond, a, Vector3(0, 0, (1 + strain) * chord), frame_of(half.conjugate()), frame_of(j))
                  .total() /
              a;
     };

@@ -446,9 +446,7 @@ double bending_stiffness_of_eight_two(double short_length, double long_length, c
   return s.EI.value;
 }
 
-TEST_F(RealTube, BendOfAChiralTube) {
-  EXPECT_NEAR(bending_stiffness_of_eight_two(4, 7, folder), 327.1, 0.3);
-}
+TEST_F(RealTube, BendOfAChiralTube) { EXPECT_NEAR(bending_stiffness_of_eight_two(4, 7, folder), 327.1, 0.3); }
 
 TEST_F(RealTubeLong, BendOfAChiralTubeDoesNotDependOnTheLengths) {
   const double EI = bending_stiffness_of_eight_two(6, 10, folder);

@@ -157,12 +157,15 @@ TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
 
 // Tethers within a rank and across ranks, one of which breaks on the way; then a run that goes on remembers it.
 TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
-  const std::string tethers =
-      "[[tether]]\ntube = 1\nelements = [0]\nto_tube = 8\nto_elements = [-1]\nstiffness_nN_per_nm = 0.2\nrest_nm = 30\n"
-      "[[tether]]\ntube = 3\nelements = [2]\nto_tube = 5\nto_elements = [2]\nstiffness_nN_per_nm = 2\nrest_nm = 1\n"
-      "[[tether]]\ntube = 7\nelements = [-1]\nto_point_nm = [9, 0, 20]\nstiffness_nN_per_nm = 4\n"
-      "breaks_at_nm = 6.9\n[[load]]\nkind = \"force\"\ntubes = [7]\nelements = [-1]\nforce_nN = [-15, 0, 0]\n",
-                    cold = "[start]\ntemperature_K = 100\nmay_cool = true\n";
+  const std::string
+      tethers =
+          "[[tether]]\ntube = 1\nelements = [0]\nto_tube = 8\nto_elements = [-1]\nstiffness_nN_per_nm = "
+          "0.2\nrest_nm = 30\n"
+          "[[tether]]\ntube = 3\nelements = [2]\nto_tube = 5\nto_elements = [2]\nstiffness_nN_per_nm = 2\nrest_nm "
+          "= 1\n"
+          "[[tether]]\ntube = 7\nelements = [-1]\nto_point_nm = [9, 0, 20]\nstiffness_nN_per_nm = 4\n"
+          "breaks_at_nm = 6.9\n[[load]]\nkind = \"force\"\ntubes = [7]\nelements = [-1]\nforce_nN = [-15, 0, 0]\n",
+      cold = "[start]\ntemperature_K = 100\nmay_cool = true\n";
   const std::string scene_text = line_scene("double", small_rope, tethers + cold);
   expect_equal_steps(scene_text, 300, 1e-10, {}, true);
   Scene scene = read_scene((dir / "scene.toml").string());
@@ -189,11 +192,12 @@ TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
 
 // Contacts across ranks, tubes that slide over several elements, and a run that goes on.
 TEST_F(LammpsRun, FrictionSlidesAsHere) {
-  const std::string scene_text = line_scene(
-      "double", small_rope,
-      "[[friction]]\nstrength_pN_per_nm = 20\nspin_strength_pN_per_nm = 30\nend_strength_pN = 5\nelastic_slip_nm = 0.005\ndrag_eV_ps_per_nm3 = 0.02\n"
-      "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
-      "[start]\ntemperature_K = 100\nmay_cool = true\n");
+  const std::string scene_text =
+      line_scene("double", small_rope,
+                 "[[friction]]\nstrength_pN_per_nm = 20\nspin_strength_pN_per_nm = 30\nend_strength_pN = "
+                 "5\nelastic_slip_nm = 0.005\ndrag_eV_ps_per_nm3 = 0.02\n"
+                 "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n");
   expect_equal_steps(scene_text, 300, 1e-9, {}, true);
   Scene scene = read_scene((dir / "scene.toml").string());
   Simulation native = start(scene, prepare(scene));
@@ -413,8 +417,9 @@ TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
   };
   const Outcome o = without("");
   EXPECT_EQ(o.code, 2);
-  EXPECT_EQ(o.err, "ropewalk: mpirun: does not start programs for root; in a container, set OMPI_ALLOW_RUN_AS_ROOT=1 and "
-                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n");
+  EXPECT_EQ(o.err,
+            "ropewalk: mpirun: does not start programs for root; in a container, set OMPI_ALLOW_RUN_AS_ROOT=1 and "
+            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n");
   EXPECT_EQ(without("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1").code, 0);
 }
 

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "scene/ends/twist.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
-#include "scene/ends/twist.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/simulation.hpp"
@@ -220,7 +220,8 @@ TEST(Twist, CouplesOnAClosedPath) {
 TEST(Twist, TheWorkOfAConservativeCoupleFollowsFromItsPotential) {
   Bundle b(7, 12, 0.05);
   for (int t = 0; t < b.topology.tubes(); ++t)  // it sways
-    for (int k = 0; k < 12; ++k) b.state.velocity.x[static_cast<std::size_t>(b.topology.tube_begin[t] + k)] = 1.5 * k * k / 121.0;
+    for (int k = 0; k < 12; ++k)
+      b.state.velocity.x[static_cast<std::size_t>(b.topology.tube_begin[t] + k)] = 1.5 * k * k / 121.0;
   TwistLoad twist;
   twist.moment = 150, twist.application = TwistLoad::Application::conservative;
   LoadsAndConstraints loads;

@@ -131,8 +131,9 @@ TEST(Device, ForcesAreThoseOfTheModel) {
   }
 }
 
-// Bonds and their damping are one text for both readers, so that the bits agree where both round each operation. Tubes
-// of two elements, as sums over more have another order; a step of no length, as velocities must be those of the state.
+// Bonds and their damping are one text for both readers, so that the bits agree where both round each operation.
+// Tubes of two elements, as sums over more have another order; a step of no length, as velocities must be those of
+// the state.
 TEST(Device, BondsHaveTheBitsOfTheModel) {
 #ifdef __FP_FAST_FMA
   GTEST_SKIP() << "the compiler fuses the products of the model";
@@ -159,7 +160,8 @@ TEST(Device, BondsHaveTheBitsOfTheModel) {
       compute_reference(tubes, bonded, s.state(), model);
       EXPECT_GT(largest(model.torque), 1);
       if (std::string(law) == "harmonic") {
-        for (const auto& [a, b] : {std::pair{&s.forces().force, &model.force}, {&s.forces().torque, &model.torque}}) {
+        for (const auto& [a, b] :
+             {std::pair{&s.forces().force, &model.force}, {&s.forces().torque, &model.torque}}) {
           EXPECT_EQ(a->x, b->x);
           EXPECT_EQ(a->y, b->y);
           EXPECT_EQ(a->z, b->z);
@@ -273,8 +275,9 @@ Rounds rounds_of(const Prepared& p, const State& s, const DeviceStepper::Neighbo
   return sum;
 }
 
-// Figures of docs/performance.md. Both single precisions are off by some 1e-4 of the largest force. The device has the
-// table of AVX-512, whose errors there are 3.8e-4 and 5.8e-4; other processors have the pieces, with smaller errors.
+// Figures of docs/performance.md. Both single precisions are off by some 1e-4 of the largest force. The device has
+// the table of AVX-512, whose errors there are 3.8e-4 and 5.8e-4; other processors have the pieces, with smaller
+// errors.
 TEST(Device, ErrorsAndWorkInARope) {
   for (const auto& [name, by_table] : {std::pair{"rope-91x50", 3.8e-4}, {"rope-91x50-twisted", 5.8e-4}}) {
     SCOPED_TRACE(name);

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "observe/limits.hpp"
-#include "scene/finer.hpp"
 #include "scene/ends/grip.hpp"
+#include "scene/finer.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -61,7 +61,8 @@ TEST(Refined, BentTubeGoesOnAsTheFineOne) {
   ASSERT_LT(coarse.state().time, 20);
   Simulation split = scenes.split(coarse);
   Simulation fine = start(scenes.fine_scene, scenes.fine);
-  EXPECT_LT(largest_bend(split), 14 * units::degree) << "half of it, and what the shear at the new element leans it by";
+  EXPECT_LT(largest_bend(split), 14 * units::degree)
+      << "half of it, and what the shear at the new element leans it by";
   run_until(fine, coarse.state().time);
   EXPECT_NEAR(distance_of_ends(split), distance_of_ends(fine), 0.03 * distance_of_ends(fine)) << "at the splitting";
   for (Simulation* s : {&split, &fine}) run_until(*s, 120);

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "model/counter_random.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/rotate.hpp"
 #include "scene/loads/torque.hpp"
-#include "scene/ends/twist.hpp"
 #include "sim/contact/line/law.hpp"
-#include "model/counter_random.hpp"
 #include "sim/dynamics/langevin.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/dynamics/verlet.hpp"
@@ -86,13 +86,13 @@ TEST(Langevin, EveryKindOfMotionHoldsHalfAkT) {
   EXPECT_NEAR(per_term(turns, 3 * elements), 1, 0.02);
 }
 
-// From 100 to 400 K and back, slowly against the coupling. 6 x 400 kinetic terms: 3 % in a single reading, 1 % in the
-// mean over some 20 independent ones.
+// From 100 to 400 K and back, slowly against the coupling. 6 x 400 kinetic terms: 3 % in a single reading, 1 % in
+// the mean over some 20 independent ones.
 TEST(Langevin, BathFollowsItsSchedule) {
   const Chain chain(400);
   Stepping stepping;
-  stepping.thermostat = std::make_shared<LangevinThermostat>(
-      Schedule({{0, 100}, {20, 100}, {40, 400}, {60, 400}, {80, 100}}), 2, 1);
+  stepping.thermostat =
+      std::make_shared<LangevinThermostat>(Schedule({{0, 100}, {20, 100}, {40, 400}, {60, 400}, {80, 100}}), 2, 1);
   Simulation s = chain.make(0.3 * chain.limit(), stepping);
   const auto temperature = [&](double from, double to) {
     double sum = 0;

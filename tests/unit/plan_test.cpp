@@ -18,8 +18,8 @@
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/dissipation.hpp"
-#include "scene/kinds/rope.hpp"
 #include "scene/ends/twist.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/wound.hpp"
 

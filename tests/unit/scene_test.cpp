@@ -14,16 +14,16 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "observe/observe.hpp"
+#include "scene/bath/thermostat.hpp"
 #include "scene/build.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/kinds/rope.hpp"
 #include "scene/lattice.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/loads/rotate.hpp"
-#include "scene/bath/thermostat.hpp"
 #include "scene/loads/torque.hpp"
-#include "scene/ends/twist.hpp"
 #include "scene/maxwell.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
@@ -683,14 +683,16 @@ TEST(Rope, ViscosityReachesFromTheSpacingToOneAndAHalf) {
   EXPECT_EQ(s.damping.contact.outer, 1.5 * b.spacing);
 }
 
-// The mean over where two rows of elements stand along each other, for thin and thick tubes, and for finer elements.
+// The mean over where two rows of elements stand along each other, for thin and thick tubes, and for finer
+// elements.
 TEST(Rope, ViscosityPerLengthOfContactIsThatOfThePublishedTubes) {
   const auto per_length = [](const std::string& set, double element) {
-    Scene s = scene_of_text(fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\nelement_length_nm = {}\n"
-                                        "[rope]\ntubes = 7\nlength_nm = 20\n",
-                                        set, element) +
-                                run,
-                            "scene.toml");
+    Scene s =
+        scene_of_text(fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\nelement_length_nm = {}\n"
+                                  "[rope]\ntubes = 7\nlength_nm = 20\n",
+                                  set, element) +
+                          run,
+                      "scene.toml");
     build(s);
     const ContactViscosity& v = s.damping.contact;
     double sum = 0;
@@ -711,8 +713,8 @@ TEST(Rope, BeginsWoundByTheTwistOfItsStart) {
   const std::string rope = "[rope]\ntubes = 19\nlength_nm = 27.12\n[start]\n";
   Scene scene = scene_from(rope + "twist_deg_per_nm = -0.8\n" + run);
   const Prepared p = prepare(scene);
-  const RopeObservation o =
-      observe(p.topology, p.state, rope_shells(p.topology, p.state, 0), validities(scene, p.topology), 0, p.spacing);
+  const RopeObservation o = observe(p.topology, p.state, rope_shells(p.topology, p.state, 0),
+                                    validities(scene, p.topology), 0, p.spacing);
   // End to end of the mean tube, which leans.
   const double rim = 0.5 * (2 + std::sqrt(3.0)) * p.spacing, turn = 0.8 * units::degree;  // corners and sides
   EXPECT_LT(o.geometric_twist, 0);
@@ -720,12 +722,15 @@ TEST(Rope, BeginsWoundByTheTwistOfItsStart) {
   EXPECT_NEAR(o.beta, std::atan(rim * turn), 0.02 * rim * turn);
   EXPECT_THROW(built_from(rope + "twist_deg_per_nm = 20\n" + run), InputError);  // the rim at 50 degrees
   EXPECT_THROW(built_from(rope + "twist_deg_per_nm = 1\nwave_nm = 0.1\n" + run), InputError);
-  EXPECT_THROW(built_from("[film]\ntubes = 5\nlength_nm = 20\nwidth_nm = 40\ndepth_nm = 40\n[start]\ntwist_deg_per_nm = 1\n" + run),
-               InputError);
+  EXPECT_THROW(
+      built_from(
+          "[film]\ntubes = 5\nlength_nm = 20\nwidth_nm = 40\ndepth_nm = 40\n[start]\ntwist_deg_per_nm = 1\n" + run),
+      InputError);
 }
 
 TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
-  const std::string rope = "[rope]\ntubes = 1\nlength_nm = 13.56\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 2\nhold_ps = 3\n";
+  const std::string rope =
+      "[rope]\ntubes = 1\nlength_nm = 13.56\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 2\nhold_ps = 3\n";
   Scene s = scene_from(rope + "unload_rate_nN_nm_per_ps = 1\nunloaded_ps = 5\nhand = \"left\"\n");
   const double times[] = {0, 1, 2, 5, 7, 9, 12}, moments[] = {0, 2, 4, 4, 2, 0, 0};
   for (int k = 0; k < 7; ++k)
@@ -737,7 +742,8 @@ TEST(Twist, IsTakenAwayAgainAndMayBeLeftHanded) {
   for (const auto& load : p.loads) load->add_forces(p.state, 7, on);
   ASSERT_EQ(on.size(), 2u);
   for (const PointLoad& at : on)
-    EXPECT_NEAR(at.torque.z(), (at.element == 0 ? 2 : -2) * units::nN_nm, 1e-12) << "the lower end turns to the right";
+    EXPECT_NEAR(at.torque.z(), (at.element == 0 ? 2 : -2) * units::nN_nm, 1e-12)
+        << "the lower end turns to the right";
   EXPECT_THROW(scene_from(rope + "unloaded_ps = 5\n"), InputError);
 }
 

@@ -17,8 +17,10 @@ TEST(OutputsPage, HasTheKeysOfTheReport) {
   o.result.limits.emplace_back();
   const auto entry = nlohmann::json::parse(validation_json({o})).at("cases").at(0);
   EXPECT_EQ(ropewalk::test::keys_of(entry), ropewalk::test::outputs_names("An entry of `cases`"));
-  EXPECT_EQ(ropewalk::test::keys_of(entry.at("checks").at(0)), ropewalk::test::outputs_names("An entry of `checks`"));
-  EXPECT_EQ(ropewalk::test::keys_of(entry.at("limits").at(0)), ropewalk::test::outputs_names("An entry of the `limits` of a case"));
+  EXPECT_EQ(ropewalk::test::keys_of(entry.at("checks").at(0)),
+            ropewalk::test::outputs_names("An entry of `checks`"));
+  EXPECT_EQ(ropewalk::test::keys_of(entry.at("limits").at(0)),
+            ropewalk::test::outputs_names("An entry of the `limits` of a case"));
 }
 
 TEST(OutputsPage, HasTheTableOfTheChart) {

@@ -15,9 +15,9 @@
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/ends/twist.hpp"
 #include "scene/kinds/film.hpp"
 #include "scene/lattice.hpp"
-#include "scene/ends/twist.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk::validate {

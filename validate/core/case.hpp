@@ -116,8 +116,8 @@ struct CaseContext {
   std::vector<ParameterSet> sets;
   bool given = false;  // with --parameters
   Fault fault;
-  // The tests of a wrong parameter ask for fewer runs: a case leaves out parameter sets, rope sizes and rates that its
-  // other runs make unnecessary.
+  // The tests of a wrong parameter ask for fewer runs: a case leaves out parameter sets, rope sizes and rates that
+  // its other runs make unnecessary.
   bool brief = false;
   const ParameterSet& set(std::size_t k = 0) const { return sets.at(k); }  // for the oracle
   ParameterSet model(std::size_t k = 0) const;                             // the same with the fault

@@ -42,17 +42,20 @@ std::string numbers_part(const ParametrizedTube& t) {
 
 // Each number with its error.
 std::string friction_part(const ParametrizedTube& t) {
-  if (t.frictions.empty()) return t.no_friction.empty() ? "" : heading("Friction") + paragraph(escape_markup(t.no_friction));
+  if (t.frictions.empty())
+    return t.no_friction.empty() ? "" : heading("Friction") + paragraph(escape_markup(t.no_friction));
   std::string html =
       heading("Friction") +
-      paragraph("Of two tubes side by side at 0 K, mean over their turns. A scene with this set and "
-                "<code>[[friction]] from = \"atoms\"</code> has it. The drag was not measured.") +
+      paragraph(
+          "Of two tubes side by side at 0 K, mean over their turns. A scene with this set and "
+          "<code>[[friction]] from = \"atoms\"</code> has it. The drag was not measured.") +
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Tubes</th><th class=\"number\">Along the axis, "
       "pN/nm</th><th class=\"number\">Against spin, pN/nm</th><th class=\"number\">Of an end, pN</th><th "
       "class=\"number\">Elastic slip, nm</th><th>Grade</th></tr></thead><tbody>\n";
   for (const PairFriction& f : t.frictions) {
     html += fmt::format("<tr><th>({},{}) beside ({},{})</th>", f.a.n, f.a.m, f.b.n, f.b.m);
-    for (const char* key : {"friction.strength", "friction.spin_strength", "friction.end_strength", "friction.elastic_slip"})
+    for (const char* key :
+         {"friction.strength", "friction.spin_strength", "friction.end_strength", "friction.elastic_slip"})
       for (const Quantity& q : f.quantities)
         if (q.key == key) html += fmt::format("<td class=\"number\">{}</td>", measured_text(q));
     html += fmt::format("<td>{}</td></tr>\n", escape_markup(grade_of(f).words()));
@@ -323,9 +326,9 @@ std::string tubes_csv(const std::vector<ParametrizedTube>& tubes) {
       text += q ? fmt::format(",{:.10g},{:.3g}", q->value, q->standard_error.value_or(0)) : ",,";
     }
     const Check* rope = worst_rope(t);
-    text += fmt::format(",{:.4g},\"{}\",{},{},{:.1f},{:.1f}\n", registry_deviation(t.set), t.grade(),
-                        t.verdict(), rope ? fmt::format("{:.4g}", rope->difference()) : "",
-                        t.calibration_seconds, t.validation_seconds());
+    text += fmt::format(",{:.4g},\"{}\",{},{},{:.1f},{:.1f}\n", registry_deviation(t.set), t.grade(), t.verdict(),
+                        rope ? fmt::format("{:.4g}", rope->difference()) : "", t.calibration_seconds,
+                        t.validation_seconds());
   }
   return text;
 }

@@ -16,8 +16,8 @@
 #include "atomistic/potential.hpp"
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
-#include "io/failure.hpp"
 #include "io/draft.hpp"
+#include "io/failure.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -276,9 +276,8 @@ void print_line(const ParametrizedTube& t) {
   }
   const Check* rope = worst_rope(t);
   fmt::print("{:<24} {:<7} EA {:.4g} nN, EI {:.4g} nN nm^2, GJ {:.4g} nN nm^2, pair {:.4g} eV/nm{}\n", t.name,
-             t.verdict(), t.set.bond.stretch * units::eV_in_nN_nm,
-             t.set.bond.bend * units::eV_in_nN_nm, t.set.bond.twist * units::eV_in_nN_nm,
-             t.set.line ? t.set.line->pair_energy : 0,
+             t.verdict(), t.set.bond.stretch * units::eV_in_nN_nm, t.set.bond.bend * units::eV_in_nN_nm,
+             t.set.bond.twist * units::eV_in_nN_nm, t.set.line ? t.set.line->pair_energy : 0,
              rope ? fmt::format(", ropes within {:.1f} %", 100 * std::fabs(rope->difference())) : "");
   for (const PairFriction& f : t.frictions)
     fmt::print("{:<24}         friction {:.3g} pN/nm along the axis, {:.3g} pN/nm against spin: {}.toml\n", "",

@@ -1,8 +1,9 @@
 // `ropewalk parametrize`: from chiralities to validated parameter sets and one report.
 //
 // For each tube (n,m) and interatomic potential the set is calibrated with its envelope, its friction is measured
-// (friction-*.toml beside the set, where scenes with this set find it), the references of its atoms are made, all cases of validation that the set allows are run, and a page says what the set is worth. What
-// is finished is kept, so that a stopped command goes on where it was.
+// (friction-*.toml beside the set, where scenes with this set find it), the references of its atoms are made, all
+// cases of validation that the set allows are run, and a page says what the set is worth. What is finished is kept,
+// so that a stopped command goes on where it was.
 #pragma once
 
 #include <string>
@@ -19,9 +20,9 @@ struct ParametrizeArguments {
   std::vector<std::string> potentials = {"tersoff"};
   std::string out = "parametrized";
   std::string friction = "like";  // pairs to measure: each tube beside its "like", "all" pairs, "none"
-  std::string tier = "full";       // as of `validate run`
-  double budget = 0;  // minutes of each tube's references; 0: any
-  int jobs = 0;       // processes at a time; 0: one for each core
+  std::string tier = "full";      // as of `validate run`
+  double budget = 0;              // minutes of each tube's references; 0: any
+  int jobs = 0;                   // processes at a time; 0: one for each core
   bool again = false;
   bool quiet = false;
 };

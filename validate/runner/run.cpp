@@ -270,7 +270,8 @@ std::vector<std::string> page_facts(const std::vector<Outcome>& outcomes) {
       of_sets + ".",
       "Registry is how the lattices of two tubes lie on one another. The model leaves it out. It is an error bar "
       "of every result that contact makes: over turns and shifts of the atoms, the energy of two tubes side by "
-      "side has the standard deviation that stands with its set. Twisting energies of ropes of seven tubes move by it "
+      "side has the standard deviation that stands with its set. Twisting energies of ropes of seven tubes move by "
+      "it "
       "as the rows \"registry over twisting energy\" of their cases say, most at small angles.",
       fmt::format("Ropewalk {} ({}), {}, {}. Every run gives the same numbers, apart from the times.", version,
                   git_id, compiler, build_type)};

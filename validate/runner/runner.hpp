@@ -30,8 +30,8 @@ struct ValidateArguments {
   bool json = false;
   bool quiet = false;
 };
-// `validate run` without its messages. Runs the cases whose results are not yet in the folder `arguments.out`, and writes
-// results and reports there. Throws InputError.
+// `validate run` without its messages. Runs the cases whose results are not yet in the folder `arguments.out`, and
+// writes results and reports there. Throws InputError.
 std::vector<Outcome> run_cases(const ValidateArguments& arguments);
 int validate_command(const ValidateArguments& arguments);
 
@@ -67,8 +67,8 @@ struct Outcome {
   std::string with_tubes(std::string text) const;  // {tube} replaced
 };
 
-// The grade of a set in words: by its own numbers, and by the cases in which the set misses. A set that misses in a case
-// is not good.
+// The grade of a set in words: by its own numbers, and by the cases in which the set misses. A set that misses in a
+// case is not good.
 std::string grade_with_verdicts(const std::string& grade, const std::string& hash,
                                 const std::vector<Outcome>& outcomes);
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "model/counter_random.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
 

@@ -40,8 +40,8 @@ class GripLoad : public Load {
   bool slide_free = false, spin_free = false, tilt_free = false;
   double smooth = -1;  // ps, of the corners of all schedules; negative: as long as sound needs to and fro
 
-  // The grip on these elements of a scene, `depth` of each tube after one another. `free_length`: nm, to which a strain
-  // refers; a grip that follows no strain needs none.
+  // The grip on these elements of a scene, `depth` of each tube after one another. `free_length`: nm, to which a
+  // strain refers; a grip that follows no strain needs none.
   GripLoad on_elements(std::vector<int> on, const Topology& topology, double free_length = 0) const;
   const Schedule& schedule(std::size_t axis) const { return schedules_[axis]; }
   // "upper grip, one disc: z held, about z moved by up to ..." for the user.

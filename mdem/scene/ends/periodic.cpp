@@ -8,8 +8,8 @@
 #include <set>
 
 #include "model/error.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/schedule_rows.hpp"
@@ -209,9 +209,11 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   const double a = type.element_length;
   double stiffness = 0;  // eV/nm, of all strands
   for (int s = 0; s < topology.strands(); ++s)
-    stiffness +=
-        topology.type_of(topology.groups.strand_begin.empty() ? s : topology.groups.strand_begin[static_cast<std::size_t>(s)])
-            .bond.stretch;
+    stiffness += topology
+                     .type_of(topology.groups.strand_begin.empty()
+                                  ? s
+                                  : topology.groups.strand_begin[static_cast<std::size_t>(s)])
+                     .bond.stretch;
   const double strain_of_pressure = least_of(tension) / stiffness,
                least = std::min(least_of(strain), strain_of_pressure);
   out.images = topology.groups.images;

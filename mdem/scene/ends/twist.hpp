@@ -1,10 +1,11 @@
 // [twist] the two-stage protocol: the moment on the grip elements (first and last of every tube; + at the upper
-// end, - at the lower, or the other way round) is ramped at a rate, held, and taken away again if asked for. One such
-// load acts on one grip.
+// end, - at the lower, or the other way round) is ramped at a rate, held, and taken away again if asked for. One
+// such load acts on one grip.
 //
 // A moment M reaches an element with the axis t as
 //
-//   couple        M e_z, of fixed direction. It has no potential (H. Ziegler, Principles of Structural Stability (1968)):
+//   couple        M e_z, of fixed direction. It has no potential (H. Ziegler, Principles of Structural Stability
+//   (1968)):
 //                 an open rope under it turns its tubes for ever, and the load goes on doing work
 //   follower      M t: it turns with the tube, and has no potential either
 //   conservative  M (e_z + t)/(1 + t_z), from the potential -M psi. psi is the turn about z that is left of the

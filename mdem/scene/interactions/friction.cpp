@@ -9,8 +9,8 @@
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "scene/bounds.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/terms/dry_friction.hpp"
 

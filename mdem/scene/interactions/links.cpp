@@ -12,8 +12,8 @@
 #include "model/segments.hpp"
 #include "model/units.hpp"
 #include "scene/bounds.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

@@ -21,9 +21,8 @@ constexpr int least_elements = RopeSource::least_elements;
 void check_rope_size(const TomlTable& t, const Scene& scene, const RopeSource& rope, int ropes) {
   const auto [below, above] = nearest_hexagonal(rope.tubes);
   if (below != above && rope.packing == RopeSource::Packing::hexagonal && rope.typed_places.empty())
-    throw t.error(
-        "tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
-        fmt::format("the nearest are {} and {}; packing = \"round\" takes any number", below, above));
+    throw t.error("tubes", fmt::format("is {}, not a hexagonal number", rope.tubes),
+                  fmt::format("the nearest are {} and {}; packing = \"round\" takes any number", below, above));
   const double elements = std::round(rope.length / scene.element_length);
   if (elements < least_elements)
     throw t.error("length_nm",
@@ -200,8 +199,8 @@ std::string RopeSource::description(const Topology& t, const State&, double spac
         t.strands() * (t.elements() / t.strands() - 2 * t.groups.images) * t.longest_element() / ends, t.strands());
   }
   return fmt::format("a rope of {:.4g} nm, spacing {:.4g} nm, of {} tubes of {:.4g} nm in the mean, in {} strands",
-                     t.elements() / t.strands() * t.longest_element() + t.groups.strand_holes, spacing_of_tubes, t.tubes(),
-                     t.elements() * t.longest_element() / t.tubes(), t.strands());
+                     t.elements() / t.strands() * t.longest_element() + t.groups.strand_holes, spacing_of_tubes,
+                     t.tubes(), t.elements() * t.longest_element() / t.tubes(), t.strands());
 }
 
 }  // namespace ropewalk

@@ -23,11 +23,7 @@ namespace {
 
 std::vector<SceneKind>& kinds_of_scenes() {
   static std::vector<SceneKind> kinds = {
-      rope_kind(),
-      plies_kind(),
-      film_kind(),
-      chain_kind(),
-      state_kind(),
+      rope_kind(), plies_kind(), film_kind(), chain_kind(), state_kind(),
   };
   return kinds;
 }

@@ -25,8 +25,8 @@ LoadKind load_kind(const KeyTable<L>& table) {
           }};
 }
 
-// A required vector that is not zero. A load on all elements divides among them: an element of half the length takes
-// half.
+// A required vector that is not zero. A load on all elements divides among them: an element of half the length
+// takes half.
 template <class L>
 KeyOf<L> vector_key(const std::string& key, Unit u, Vector3 L::*member, const std::string& example,
                     const std::string& meaning) {

@@ -46,10 +46,10 @@ const KeyTable<RunOptions>& run_table() {
       "what to do",
       {Key::custom("mode", "", standard("\"dynamics\""),
                    "\"dynamics\", or \"relax\": to the nearest minimum of the energy", read_mode),
-       Key::custom(
-           "time_step_fs", "fs", standard("\"auto\""),
-           "\"auto\": 0.9 of the stability limit; 0.6 from a state file, where heat may_cool, or to relax; where warm, positions are at most 2 % hotter than velocities",
-           read_time_step),
+       Key::custom("time_step_fs", "fs", standard("\"auto\""),
+                   "\"auto\": 0.9 of the stability limit; 0.6 from a state file, where heat may_cool, or to relax; "
+                   "where warm, positions are at most 2 % hotter than velocities",
+                   read_time_step),
        Key::word(
            "integrator", Words<bool>{{"verlet", false}, {"rk4", true}},
            [](auto& r) -> auto& { return r.stepping.runge_kutta; }, standard(),

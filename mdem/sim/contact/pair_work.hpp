@@ -10,13 +10,14 @@
 
 namespace ropewalk {
 
-// Consecutive elements begin .. end - 1 of one tube that a chunk acts on; element j is entry j + shift of its buffer.
+// Consecutive elements begin .. end - 1 of one tube that a chunk acts on; element j is entry j + shift of its
+// buffer.
 struct BufferRange {
   int begin = 0, end = 0, shift = 0;
 };
 
-// Element i and the elements from .. to - 1 of one tube that may come within reach of it. `own` has i, and i and the
-// elements behind it are the chunk's up to `own_end`; `partners` has from .. to - 1.
+// Element i and the elements from .. to - 1 of one tube that may come within reach of it. `own` has i, and i and
+// the elements behind it are the chunk's up to `own_end`; `partners` has from .. to - 1.
 struct NearElements {
   int i = 0;
   BufferRange own;

@@ -29,7 +29,8 @@ EndDrives end_drives(const LoadsAndConstraints& loads, const Topology& topology)
 
 // Whether this component of some tube is held or moved at both of its ends.
 bool is_kept_between(const EndDrives& drives, std::size_t axis);
-// The displacement or rotation of the upper end against the lower one, the largest of all tubes; zero if none is moved.
+// The displacement or rotation of the upper end against the lower one, the largest of all tubes; zero if none is
+// moved.
 Schedule moved_apart(const EndDrives& drives, std::size_t axis);
 // The force or couple on the tube that has the largest at this end.
 Schedule load_of_each(const EndDrives& drives, End end, std::size_t axis);

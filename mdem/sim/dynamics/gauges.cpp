@@ -7,10 +7,7 @@
 #include "model/units.hpp"
 
 namespace ropewalk {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 EndElements tube_ends(const Topology& topology) {
   EndElements ends;

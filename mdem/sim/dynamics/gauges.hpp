@@ -37,7 +37,7 @@ class Gauges {
   // The sums: all that the future of a gauge depends on.
   struct Sum {
     forms::Vec force_time{}, torque_time{};  // since the last reading
-    double turned = 0, work = 0;              // since the start
+    double turned = 0, work = 0;             // since the start
   };
   struct Sums {
     std::array<Sum, 2> of;

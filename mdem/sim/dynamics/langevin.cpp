@@ -91,7 +91,8 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
   if (topology.groups.images == 0) return;
   Normals normal;  // beyond those of all elements
   draw(seed_, state.step, state.part, (n + group - 1) / group * group, normal);
-  set_period_rate(topology, keep * rate + std::sqrt(energy / topology.groups.period_inertia) * normal.of[2][0], state);
+  set_period_rate(topology, keep * rate + std::sqrt(energy / topology.groups.period_inertia) * normal.of[2][0],
+                  state);
 }
 
 }  // namespace ropewalk

@@ -26,7 +26,8 @@ struct Relaxed {
   double above = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();  // 2 sqrt(above/U)
   std::int64_t saddles = 0;                                 // that it rested on and left
-  double falls = 0;  // eV: it rests on a saddle beyond which the energy falls by so little, or more; it stayed there
+  double falls =
+      0;  // eV: it rests on a saddle beyond which the energy falls by so little, or more; it stayed there
 };
 
 // The state of a relaxation between two of its steps. It has parts: if the forces are small and the energy is
@@ -48,8 +49,9 @@ struct Relaxation {
   bool underway() const { return began >= 0; }
 };
 
-// The step at which the last relaxation came to rest, with its Relaxed::saddles and Relaxed::falls. A relaxation that begins
-// at this step tries no motion again. So a run that was killed after the end of its relaxation is resumed to the same bits.
+// The step at which the last relaxation came to rest, with its Relaxed::saddles and Relaxed::falls. A relaxation
+// that begins at this step tries no motion again. So a run that was killed after the end of its relaxation is
+// resumed to the same bits.
 struct Rest {
   std::int64_t step = -1;
   std::int64_t saddles = 0;

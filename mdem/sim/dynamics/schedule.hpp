@@ -42,7 +42,8 @@ class Schedule {
   bool stays() const { return std::fabs(last()) >= largest(); }
 
  private:
-  // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of it.
+  // Between two points: from the speed `enter` to `along` in the time `smooth`, and on to `leave` in the last of
+  // it.
   struct Line {
     double begin = 0, length = 0, from = 0;
     double enter = 0, along = 0, leave = 0, smooth = 0;

@@ -20,9 +20,9 @@ namespace ropewalk {
 struct TimeStepLimit {
   double limit = 0;  // ps
   // Its causes, each on its own: the stiffest mode, the fastest damping.
-  double chain_frequency = 0;     // rad/ps
-  double contact_frequency = 0;   // rad/ps
-  double damping_rate = 0;        // 1/ps
+  double chain_frequency = 0;    // rad/ps
+  double contact_frequency = 0;  // rad/ps
+  double damping_rate = 0;       // 1/ps
   // For each plane wave: w^2 (rad^2/ps^2) of its stiffest mode, by tube type, and the six rates of damping (1/ps).
   std::vector<std::vector<double>> stiffest;
   std::vector<double> damping_rates;

@@ -21,8 +21,8 @@ struct ThermostatOptions {
 class Thermostat {
  public:
   virtual ~Thermostat() = default;
-  // The internal variables of this thermostat at the start, such as the velocities of a Nosé-Hoover chain; empty: it
-  // has none. The simulation keeps their values and writes them to checkpoints.
+  // The internal variables of this thermostat at the start, such as the velocities of a Nosé-Hoover chain; empty:
+  // it has none. The simulation keeps their values and writes them to checkpoints.
   virtual std::vector<double> initial_variables() const { return {}; }
   // Changes velocities and angular velocities, and the internal variables, as the bath does during dt (ps). The
   // simulation calls this function once in each step, restores the constrained components afterwards and books the

@@ -31,8 +31,7 @@ BondSum whole_bonds(const BondInput& in, int tube, const BondRange& range, TubeB
       type.bond.anharmonic.used ? ROPEWALK_IN_USE(anharmonic_forces) : ROPEWALK_IN_USE(harmonic_forces);
   sum.energy = forces(type, in.state.position, work.frames, range, work.bonds, slips);
   for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
-    const Frame fi = work.frames[static_cast<std::size_t>(i)],
-                        fj = work.frames[static_cast<std::size_t>(i + 1)];
+    const Frame fi = work.frames[static_cast<std::size_t>(i)], fj = work.frames[static_cast<std::size_t>(i + 1)];
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }
   if (in.damping.rate > 0) sum.power = ROPEWALK_IN_USE(bond_damping)(type, in.damping, in.state, range, work.bonds);
@@ -93,7 +92,7 @@ Joint joint_behind(const BondInput& in, int tube, int i) {
 BondSum compute_bonds(const BondInput& in, const Segment& of, const Joint* before, const Joint* behind,
                       const ForceRows& out) {
   ROPEWALK_EXPECTS(of.begin < of.end && of.begin >= in.topology.tube_begin[of.tube] &&
-          of.end <= in.topology.tube_begin[of.tube + 1]);
+                   of.end <= in.topology.tube_begin[of.tube + 1]);
   ROPEWALK_EXPECTS(!before || of.begin > in.topology.tube_begin[of.tube]);
   ROPEWALK_EXPECTS(!behind || of.end < in.topology.tube_begin[of.tube + 1]);
   thread_local TubeBonds work;

@@ -5,8 +5,8 @@
 
 namespace ropewalk {
 
-// v += F dt/m,  w += M dt/I  of the elements of a segment. `terms`: those that act in the kick, or null. Returns the
-// energy (eV) that they take out: the work of their forces at the mean of the velocities before and after.
+// v += F dt/m,  w += M dt/I  of the elements of a segment. `terms`: those that act in the kick, or null. Returns
+// the energy (eV) that they take out: the work of their forces at the mean of the velocities before and after.
 double kick(const Topology& topology, const ForceTerms* terms, const ForceRows& total, double dt, const Segment& of,
             State& state);
 

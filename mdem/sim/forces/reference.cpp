@@ -41,8 +41,8 @@ void bond(const TubeType& type, const Interaction& in, const State& s, std::size
     out.slipping_bond = static_cast<int>(i);
   if (in.damping.bond.rate > 0)
     add_pair(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],
-                                s.velocity[j], s.angular_velocity[j]),
-          i, j, out);
+                                   s.velocity[j], s.angular_velocity[j]),
+             i, j, out);
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ std::size_t FindNear(const CellSearch& s, const MemberRange* first, const Member
   const ops::ScalableTag<float> d;
   const ops::RebindToSigned<decltype(d)> di;
   const int lanes = static_cast<int>(ops::Lanes(d));
-  const auto x = ops::Set(d, s.at_x), y = ops::Set(d, s.at_y), z = ops::Set(d, s.at_z), reach2 = ops::Set(d, s.reach2);
+  const auto x = ops::Set(d, s.at_x), y = ops::Set(d, s.at_y), z = ops::Set(d, s.at_z),
+             reach2 = ops::Set(d, s.reach2);
   const auto after = ops::Set(di, s.after);
   std::size_t count = 0;
   for (const MemberRange* r = first; r != last; ++r)
@@ -47,7 +48,7 @@ std::size_t FindNear(const CellSearch& s, const MemberRange* first, const Member
       const auto member = ops::Load(di, s.member + k);
       const auto near = ops::Lt(ops::MulAdd(dx, dx, ops::MulAdd(dy, dy, ops::Mul(dz, dz))), reach2);
       const auto met = ops::And(ops::And(ops::RebindMask(di, near), ops::Gt(member, after)),
-                               ops::FirstN(di, static_cast<std::size_t>(r->end - k)));
+                                ops::FirstN(di, static_cast<std::size_t>(r->end - k)));
       count += ops::CompressStore(member, met, di, found + count);
     }
   return count;

@@ -15,7 +15,8 @@
 namespace ropewalk {
 namespace {
 
-// Appends the spans of one element's neighbours, in rising order; a span of an earlier element is never made longer.
+// Appends the spans of one element's neighbours, in rising order; a span of an earlier element is never made
+// longer.
 void append_spans(const int* number, std::size_t count, std::vector<ElementSpan>& spans) {
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && number[k] == spans.back().end)
@@ -123,8 +124,9 @@ double NeighbourList::coordinate_unit() const {
   return std::exp2(std::max(8.0, std::ceil(std::log2(period))) - 32);
 }
 
-// The chunks do not depend on the number of threads. Where tubes with distant numbers cross, the buffers of the chunks
-// overlap widely. Clearing and adding many such buffers would cost as much as the contact, so that fewer are made.
+// The chunks do not depend on the number of threads. Where tubes with distant numbers cross, the buffers of the
+// chunks overlap widely. Clearing and adding many such buffers would cost as much as the contact, so that fewer are
+// made.
 void NeighbourList::cut_into_chunks(int n) {
   constexpr int fewest = 16;         // enough for as many threads
   constexpr double max_overlap = 3;  // buffers for each element

@@ -20,8 +20,9 @@ struct Interaction {
   Precision precision = Precision::full;
   double exclude_along_tube = 0;  // nm; 0: the cutoff of the law
   Damping damping;
-  std::vector<std::shared_ptr<const ForceTerm>> terms;  // what else adds forces, as it is at the start; see add_term()
-  double term_reach = 0;                                // nm: pairs that the terms ask the neighbour list for
+  std::vector<std::shared_ptr<const ForceTerm>>
+      terms;              // what else adds forces, as it is at the start; see add_term()
+  double term_reach = 0;  // nm: pairs that the terms ask the neighbour list for
 
   bool has_contact() const { return law != nullptr; }
   bool damped_contact() const { return damping.contact.eta > 0; }

@@ -13,7 +13,8 @@ namespace ropewalk {
 
 void kick_elements(const Vec3Array& force, double by, Vec3Array& velocity, std::ptrdiff_t begin,
                    std::ptrdiff_t end) {
-  ROPEWALK_EXPECTS(begin >= 0 && begin <= end && static_cast<std::size_t>(end) <= std::min(force.size(), velocity.size()));
+  ROPEWALK_EXPECTS(begin >= 0 && begin <= end &&
+                   static_cast<std::size_t>(end) <= std::min(force.size(), velocity.size()));
   ROPEWALK_IN_USE(kick_elements)(force, by, velocity, begin, end);
 }
 

@@ -21,7 +21,7 @@ struct Segment {
 // If other processes own some elements, a part has own ones or copies only.
 class TubeParts {
  public:
-  static constexpr int most = 512;                       // elements of a part
+  static constexpr int most = 512;                   // elements of a part
   static constexpr int max_block = cached_elements;  // a longer part is a block of its own
 
   TubeParts() = default;
@@ -46,8 +46,8 @@ class TubeParts {
 // or across the longest side of each piece, so that tiles have least in common.
 enum class CutBy { index, position };
 
-// Cuts all own elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of a
-// tile are in the order of their elements; a tile may be empty. The method is recursive coordinate bisection
+// Cuts all own elements into `count` tiles of nearly equal cost; `cost` has one entry per element. The segments of
+// a tile are in the order of their elements; a tile may be empty. The method is recursive coordinate bisection
 // (Berger and Bokhari 1987, doi:10.1109/TC.1987.1676942), except for the first cut. Consecutive tiles lie near each
 // other. The tiles depend on the arguments only. Positions that are not finite count as zero.
 std::vector<std::vector<Segment>> cut_into_tiles(const Topology& topology, const Vec3Array& position,

@@ -1,5 +1,5 @@
-// Includes the file ROPEWALK_LOOPS once for each vector unit, see sim/threads/vector_unit.hpp. No guard: a source file
-// may have several.
+// Includes the file ROPEWALK_LOOPS once for each vector unit, see sim/threads/vector_unit.hpp. No guard: a source
+// file may have several.
 #define ROPEWALK_UNIT in_base
 #include ROPEWALK_LOOPS
 #undef ROPEWALK_UNIT

@@ -1,6 +1,6 @@
 // The vector unit in use: loops over elements and the contact kernels (sim/vectors/base.hpp) are compiled for every
-// x86-64, and for those of the levels v3 (AVX2) and v4 (AVX-512). One binary runs on all of them. Sums have other last
-// digits on each, so that the unit can be chosen.
+// x86-64, and for those of the levels v3 (AVX2) and v4 (AVX-512). One binary runs on all of them. Sums have other
+// last digits on each, so that the unit can be chosen.
 //
 // Loops stand in a file of their own, NAME_loops-inl.hpp, in namespace ROPEWALK_UNIT:
 //   #define ROPEWALK_LOOPS "NAME_loops-inl.hpp"

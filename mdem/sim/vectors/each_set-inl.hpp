@@ -1,4 +1,5 @@
-// Includes the file VEC_SOURCE for AVX-512 and AVX2. The rest of the translation unit is compiled for the default set.
+// Includes the file VEC_SOURCE for AVX-512 and AVX2. The rest of the translation unit is compiled for the default
+// set.
 #include "sim/vectors/base.hpp"
 
 #ifndef VEC_EACH_SET

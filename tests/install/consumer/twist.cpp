@@ -9,9 +9,9 @@
 
 int main(int argc, char** argv) {
   const std::string set = argc > 1 ? argv[1] : "cnt-10-10-tersoff";
-  const std::string text =
-      "format = \"ropewalk-scene-1\"\nparameters = \"" + set + "\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
-      "[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 1\n";
+  const std::string text = "format = \"ropewalk-scene-1\"\nparameters = \"" + set +
+                           "\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+                           "[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 1\n";
   ropewalk::Scene scene = ropewalk::scene_of_text(text, "from-memory.toml");
   const ropewalk::Prepared prepared = ropewalk::prepare(scene);
   ropewalk::Simulation simulation = ropewalk::start(scene, prepared);

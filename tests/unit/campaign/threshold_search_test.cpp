@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-
 namespace ropewalk {
 namespace {
 namespace UNIT {
@@ -44,15 +43,16 @@ TEST_F(ThresholdSearches, TakesManyTrials) {
   constexpr int own = 20000, foreign = 30000;
   std::string table = key_cells(sweep, sweep.keys()) + column_names(trial_columns()) + "\n";
   const auto row = [&](const SweepPoint& p, double value, bool passed, const std::string& hash) {
-    table += key_cells(sweep, p.values) +
-             fmt::format("1,{:.6g},{},{},nan,nan,0,straight,{}\n", value, passed ? 1 : 0, passed ? "3" : "nan", hash);
+    table += key_cells(sweep, p.values) + fmt::format("1,{:.6g},{},{},nan,nan,0,straight,{}\n", value,
+                                                      passed ? 1 : 0, passed ? "3" : "nan", hash);
   };
   const TrialHashes hashes(sweep, points.back());
   for (int k = 0; k < own; ++k) {
     const double value = 2 + 1e-3 * k;
     row(points.back(), value, value > 10, hashes.of(value));
   }
-  for (int k = 0; k < foreign; ++k) row(points[static_cast<std::size_t>(k) % 40], 3, false, fmt::format("{:016x}", k));
+  for (int k = 0; k < foreign; ++k)
+    row(points[static_cast<std::size_t>(k) % 40], 3, false, fmt::format("{:016x}", k));
   write("trials.csv", table);
 
   ThresholdSearch search(sweep, campaign_directory(path("s.toml"), path("out")));
@@ -68,8 +68,8 @@ TEST_F(ThresholdSearches, TakesManyTrials) {
 TEST_F(ThresholdSearches, TakesTrialsOfASweepWithOtherKeys) {
   const Sweep sweep = read_sweep(path("s.toml"));
   const std::vector<SweepPoint> points = points_of(sweep);
-  write("trials.csv", "rope.tubes,seed,value,passed,at_ps,scene_xxh64\n1,1,4,0,nan," + trial_hash(sweep, points[7], 4) +
-                          "\n1,1,4,0,nan,0123456789abcdef\n");
+  write("trials.csv", "rope.tubes,seed,value,passed,at_ps,scene_xxh64\n1,1,4,0,nan," +
+                          trial_hash(sweep, points[7], 4) + "\n1,1,4,0,nan,0123456789abcdef\n");
   ThresholdSearch search(sweep, campaign_directory(path("s.toml"), path("out")));
   search.begin(false);
   EXPECT_EQ(search.take(path("trials.csv")), std::pair(std::size_t{1}, std::size_t{2}));

@@ -57,13 +57,18 @@ TEST(FrictionToml, IsReadAndWritten) {
 TEST(FrictionToml, GradeFollowsFromTheErrors) {
   const auto grade = [](const std::string& text) { return grade_of(friction_of_text(text, "mine.toml")); };
   EXPECT_EQ(grade(valid).words(), "good");
-  const Grade limited = grade(with("value = 40, unit = \"pN/nm\", standard_error = 1", "value = 40, unit = \"pN/nm\", standard_error = 10"));
+  const Grade limited = grade(with("value = 40, unit = \"pN/nm\", standard_error = 1",
+                                   "value = 40, unit = \"pN/nm\", standard_error = 10"));
   EXPECT_EQ(limited.level, Grade::Level::limited);
   EXPECT_THAT(limited.words(), HasSubstr("along the axis 40 +- 10 pN/nm"));
-  EXPECT_EQ(grade(with("value = 60, unit = \"pN/nm\", standard_error = 1", "value = 60, unit = \"pN/nm\", standard_error = 40")).level,
+  EXPECT_EQ(grade(with("value = 60, unit = \"pN/nm\", standard_error = 1",
+                       "value = 60, unit = \"pN/nm\", standard_error = 40"))
+                .level,
             Grade::Level::unfit);
   // Next to nothing, known to be next to nothing.
-  EXPECT_EQ(grade(with("value = 40, unit = \"pN/nm\", standard_error = 1", "value = 0.1, unit = \"pN/nm\", standard_error = 0.2")).words(),
+  EXPECT_EQ(grade(with("value = 40, unit = \"pN/nm\", standard_error = 1",
+                       "value = 0.1, unit = \"pN/nm\", standard_error = 0.2"))
+                .words(),
             "good");
 }
 
@@ -101,7 +106,8 @@ TEST(FrictionToml, OwnFilesStandBesideTheScene) {
   const fs::path folder = fs::temp_directory_path() / ("ropewalk-friction-" + std::to_string(::getpid()));
   fs::create_directories(folder);
   const InputError::Place place{"scene.toml", 1, "friction.from"};
-  write_file_atomically((folder / "friction-mine.toml").string(), with("name = \"mine\"", "name = \"friction-mine\""));
+  write_file_atomically((folder / "friction-mine.toml").string(),
+                        with("name = \"mine\"", "name = \"friction-mine\""));
   const std::vector<std::string> folders = {folder.string()};
   EXPECT_EQ(friction_between({10, 10}, {17, 0}, folders, place).name, "friction-mine");
   EXPECT_EQ(friction_between({10, 10}, {10, 10}, folders, place).name, "friction-10-10-10-10-tersoff");

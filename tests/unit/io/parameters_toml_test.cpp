@@ -1,4 +1,6 @@
 // Correlations of the errors of a set: their table, and the covariance that follows.
+#include "io/parameters_toml.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <string>
 
 #include "io/files.hpp"
-#include "io/parameters_toml.hpp"
 #include "model/error.hpp"
 #include "report/page.hpp"
 

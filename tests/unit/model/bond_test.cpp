@@ -183,8 +183,7 @@ TEST(Bond, SmallDeformationsAreABeam) {
   const auto turned = [&](const Vector3& axis, double angle) { return frame_of(test::turn(axis, angle)); };
   const Vector3 x = Vector3::UnitX();
 
-  EXPECT_NEAR(bond_energy(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small,
-              1e-9);
+  EXPECT_NEAR(bond_energy(k, a, z * (1 + small), rest, rest).stretch, 0.5 * k.stretch * a * small * small, 1e-9);
   const auto bent = bond_energy(k, a, z, turned(x, -small / 2), turned(x, small / 2));
   EXPECT_NEAR(bent.bend / (0.5 * k.bend / a * small * small), 1, 1e-6);
   EXPECT_NEAR(bent.shear, 0, 1e-9);

@@ -60,7 +60,8 @@ TEST(FilmTube, LiesOnATiltedOne) {
   EXPECT_NEAR(tube.z, 4 + spacing / std::cos(tilt), 1e-9);
 }
 
-// Two tubes lie side by side, nearer than the spacing, and do not cross. Then an end of one tube points at the other.
+// Two tubes lie side by side, nearer than the spacing, and do not cross. Then an end of one tube points at the
+// other.
 TEST(FilmTube, LiesInTheGrooveAndOnAnEnd) {
   const FilmTube groove = let_down_at(0, 0, {{0, 1.5, 0, 0, 0}, {0, -1.5, 0, 0, 0}}, 20, 2.5);
   EXPECT_NEAR(groove.z, 2, 1e-9);

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scene/loads/fix.hpp"
 #include "scene/ends/grip.hpp"
-#include "scene/loads/rotate.hpp"
 #include "scene/ends/twist.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/rotate.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/refine.hpp"

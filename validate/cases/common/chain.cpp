@@ -47,7 +47,7 @@ Eigen::VectorXd chain_forces(const BondStiffness& bond, double element_length, c
   for (std::size_t i = 0; i + 1 < state.size(); ++i) {
     const BondForce f =
         bond_energy_and_gradient(bond, element_length, state.position[i + 1] - state.position[i],
-                                         frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+                                 frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
     const auto at = static_cast<Eigen::Index>(6 * i);
     out.segment<3>(at) -= f.force_j;
     out.segment<3>(at + 3) += f.torque_i;

@@ -9,8 +9,8 @@
 
 namespace ropewalk::validate {
 
-GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, std::shared_ptr<const ContactLaw> law, double spacing_,
-                         int held_)
+GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, std::shared_ptr<const ContactLaw> law,
+                         double spacing_, int held_)
     : topology(topology_of(set)), bonds(bonds_), held(held_), spacing(spacing_) {
   interaction.law = std::move(law);
   const int elements = elements_of_tube();

@@ -29,13 +29,15 @@ std::vector<double> Slide::relative(double well) const {
   return out;
 }
 
-double rows_energy(const ContactLaw& law, double element_length, const Places& rows, const std::vector<double>& shift) {
+double rows_energy(const ContactLaw& law, double element_length, const Places& rows,
+                   const std::vector<double>& shift) {
   double sum = 0;
   for (std::size_t t = 0; t < rows.size(); ++t)
     for (std::size_t u = t + 1; u < rows.size(); ++u)
       for (int e = -30; e <= 30; ++e)
-        sum += law.energy({}, {rows[u].first - rows[t].first, rows[u].second - rows[t].second,
-                               (e + shift[u] - shift[t]) * element_length},
+        sum += law.energy({},
+                          {rows[u].first - rows[t].first, rows[u].second - rows[t].second,
+                           (e + shift[u] - shift[t]) * element_length},
                           Vector3::UnitZ(), Vector3::UnitZ());
   return sum / element_length;
 }

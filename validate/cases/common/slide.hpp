@@ -22,7 +22,8 @@ struct Slide {
 };
 
 // Energy per length (eV/nm) of rows that are shifted by these parts of an element.
-double rows_energy(const ContactLaw& law, double element_length, const Places& rows, const std::vector<double>& shift);
+double rows_energy(const ContactLaw& law, double element_length, const Places& rows,
+                   const std::vector<double>& shift);
 // The first row slides by one element along the others.
 Slide slide_first(const ContactLaw& law, double element_length, const Places& rows);
 

@@ -50,7 +50,8 @@ double contact_of(const Topology& topology, const State& s, const ContactLaw& la
     if (other == tube) continue;
     for (int e = topology.tube_begin[other]; e < topology.tube_begin[other + 1]; ++e) {
       const auto j = static_cast<std::size_t>(e);
-      sum += law.energy({0, 0}, s.position[j] - s.position[i], axis_of(s.orientation[i]), axis_of(s.orientation[j]));
+      sum +=
+          law.energy({0, 0}, s.position[j] - s.position[i], axis_of(s.orientation[i]), axis_of(s.orientation[j]));
     }
   }
   return sum;
@@ -69,9 +70,10 @@ double side_by_side(const ContactLaw& law, double element, double distance) {
 
 RopeInMachine::RopeInMachine(const ParameterSet& with, int count, int elements) : set(with), tubes(count) {
   Scene scene = scene_of_text(
-      fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = 7\nlength_nm = {}\n[run]\nmode = "
-                  "\"relax\"\n",
-                  with.path, elements * with.element_length),
+      fmt::format(
+          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = 7\nlength_nm = {}\n[run]\nmode = "
+          "\"relax\"\n",
+          with.path, elements * with.element_length),
       "");
   scene.sets = {with};
   const Prepared p = prepare(scene);
@@ -96,10 +98,10 @@ RopeInMachine::RopeInMachine(const ParameterSet& with, int count, int elements) 
     cohesion.push_back(-0.5 * contact_of(topology, straight_, law, t, middle) / with.element_length);
   }
   constexpr double d = 1e-3;
-  const double spring = (side_by_side(law, with.element_length, spacing + d) +
-                         side_by_side(law, with.element_length, spacing - d) -
-                         2 * side_by_side(law, with.element_length, spacing)) /
-                        (d * d);
+  const double spring =
+      (side_by_side(law, with.element_length, spacing + d) + side_by_side(law, with.element_length, spacing - d) -
+       2 * side_by_side(law, with.element_length, spacing)) /
+      (d * d);
   modulus = 2 / std::sqrt(3.0) * spring;
 }
 

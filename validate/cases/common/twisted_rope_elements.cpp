@@ -35,8 +35,8 @@ double grip_force(const GrippedRope& rope) {
   return sum;
 }
 
-// Moves the upper grip along the axis until no force acts on it; returns by how much. Newton steps with the stiffness
-// of straight tubes; that of a twisted rope is close to it and not larger.
+// Moves the upper grip along the axis until no force acts on it; returns by how much. Newton steps with the
+// stiffness of straight tubes; that of a twisted rope is close to it and not larger.
 double release(GrippedRope& rope, double axial_stiffness) {
   double rise = 0;
   for (int k = 0; k < 8 && std::fabs(grip_force(rope)) > pull_tolerance; ++k) {

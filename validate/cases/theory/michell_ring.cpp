@@ -47,8 +47,7 @@ class TwistedRing {
           frame_of(around * small_turn(moves[e].tail<3>()) * axis_ * turn_about(Vector3::UnitZ(), k * twist_));
     }
     const auto bond = [&](std::size_t i) {
-      return bond_energy_and_gradient(set_.bond, set_.element_length, at[i + 1] - at[i], frame[i],
-                                              frame[i + 1]);
+      return bond_energy_and_gradient(set_.bond, set_.element_length, at[i + 1] - at[i], frame[i], frame[i + 1]);
     };
     const BondForce before = bond(0), after = bond(1);
     Vector6 out;

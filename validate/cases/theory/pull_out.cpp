@@ -76,7 +76,8 @@ CaseResult run(const CaseContext& context) {
   }
   result.remarks.push_back(
       "The force does not depend on the overlap: smooth tubes bear no shear, and only the ends that part from each "
-      "other count. Measured values of bundles of double-walled tubes, 1.7 ± 1.0 nN per contact, are five times the bare "
+      "other count. Measured values of bundles of double-walled tubes, 1.7 ± 1.0 nN per contact, are five times "
+      "the bare "
       "mechanics (Filleter et al., Nano Letters 12, 732 (2012)): what holds real tubes is not in this model.");
   return result;
 }

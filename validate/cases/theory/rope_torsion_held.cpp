@@ -11,7 +11,8 @@ const RegisteredCase registered([] {
   c.title = "Torque and tension of a rope turned at fixed length";
   c.why = "What a torsion machine reads; from it follows the energy that a rope stores.";
   c.setup =
-      "7, 19, 37 and 91 tubes of {tube} (of other sets 7 and 37), wound evenly between two rigid clamps at the length of the relaxed rope and "
+      "7, 19, 37 and 91 tubes of {tube} (of other sets 7 and 37), wound evenly between two rigid clamps at the "
+      "length of the relaxed rope and "
       "brought to rest. The outermost tubes lean by 0.5, 5, 10 and 15 degrees.";
   c.run = [](const CaseContext& context) { return run_rope_torsion(context, RopeInMachine::Length::held); };
   c.turns_red = {{wrong_stiffnesses(1.1),

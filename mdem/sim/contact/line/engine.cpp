@@ -142,8 +142,7 @@ PairEnergy LineEngine::pair_energy(const ContactLaw& law) const {
 double LineEngine::step_bytes(const NeighbourList&, std::size_t number) const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
   double sum = static_cast<double>(list_.spans() * sizeof(NeighbourSpan));
-  for (const LineChunk& chunk : list_.chunks())
-    sum += of(chunk.ranges) + buffer_bytes(chunk.elements, number);
+  for (const LineChunk& chunk : list_.chunks()) sum += of(chunk.ranges) + buffer_bytes(chunk.elements, number);
   return sum;
 }
 

@@ -134,7 +134,8 @@ using Form =
 
 // For K vectors of squared distances X: du/dy and, if wanted, u; zero from the cutoff on.
 template <bool energies, int K, class D, class Table>
-VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<D> (&u)[K], ops::Vec<D> (&slope)[K]) {
+VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<D> (&u)[K],
+                       ops::Vec<D> (&slope)[K]) {
   using T = typename Table::Value;
   using At = Form<Table, D>;
   const auto& form = At::of(t);
@@ -160,7 +161,8 @@ VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<
     const auto v1 = ops::Set(d, t.v1), v2 = ops::Set(d, t.v2);
     if constexpr (energies)
       u[k] = ops::IfThenElse(
-          in_core, ops::MulAdd(e, ops::MulAdd(ops::Mul(e, ops::Set(d, static_cast<T>(0.5))), v2, v1), ops::Set(d, t.v0)),
+          in_core,
+          ops::MulAdd(e, ops::MulAdd(ops::Mul(e, ops::Set(d, static_cast<T>(0.5))), v2, v1), ops::Set(d, t.v0)),
           u[k]);
     // du/dy = du/drho unit/(2 rho scale), rho in units.
     const auto of_core =
@@ -231,8 +233,8 @@ struct ElementContact {
     const D d;
     const V ahead = ops::Max(ops::Sub(ops::Abs(nodes.along), ops::Set(d, pair.half)), ops::Zero(d));
     const V least = ops::MulAdd(ahead, ahead, ops::NegMulAdd(nodes.along, nodes.along, nodes.square));
-    return ops::bits_of_mask(
-        d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)), ops::FirstN(d, static_cast<std::size_t>(count))));
+    return ops::bits_of_mask(d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)),
+                                         ops::FirstN(d, static_cast<std::size_t>(count))));
   }
 
   // Sums over nodes of the element: A and B, and the energy.

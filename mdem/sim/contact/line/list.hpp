@@ -26,7 +26,7 @@ struct NeighbourSpan {
   short node_from = 0, nodes = 0;  // that may come within the cutoff; counted from the first node of `first`
   short type = 0;                  // of the tube
   std::int8_t elements = 0;        // that may come within the cutoff
-  std::int8_t near_from = 0, near = 0;      // elements that other work on pairs may reach, counted from `first`
+  std::int8_t near_from = 0, near = 0;  // elements that other work on pairs may reach, counted from `first`
 
   // `moved` (nm): by no more have distances shrunk since the list was built.
   bool may_be_in_reach(double moved) const { return elements > 0 && static_cast<double>(gap_to_cutoff) <= moved; }
@@ -72,8 +72,9 @@ class LineList {
   // Entries of a chunk's buffers before its first element, so that whole vectors can begin there.
   static constexpr int room_before = 16;
 
-  // From the pairs of the neighbour list and the positions that it was built at, and lists the pairs for `pairs` (or
-  // null). Throws std::invalid_argument where a tube type has other numbers of nodes towards different partners.
+  // From the pairs of the neighbour list and the positions that it was built at, and lists the pairs for `pairs`
+  // (or null). Throws std::invalid_argument where a tube type has other numbers of nodes towards different
+  // partners.
   void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list, PairWork* pairs);
 
   Span<NeighbourSpan> spans(int element) const { return entries_of(element, begin_, spans_); }

@@ -12,7 +12,7 @@ void for_written(const TubeParts& parts, const LineChunk& chunk, const What& wha
     for (int k = parts.part_of(range.begin, range.tube);
          k < parts.begin(range.tube + 1) && parts[k].begin < range.end; ++k)
       what(k, BufferRange{std::max(parts[k].begin, range.begin), std::min(parts[k].end, range.end),
-                           range.element_shift});
+                          range.element_shift});
 }
 
 }  // namespace

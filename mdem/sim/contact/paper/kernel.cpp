@@ -32,7 +32,8 @@ struct alignas(64) Block {
   using C = typename PaperElements<T>::Coordinate;
   static constexpr std::size_t lanes = 16;  // pairs are filled up to a multiple of it
   static constexpr std::size_t capacity = 192;
-  static constexpr std::size_t length = capacity + lanes;  // spans are copied in whole vectors, hence the room behind
+  static constexpr std::size_t length =
+      capacity + lanes;  // spans are copied in whole vectors, hence the room behind
   static_assert(ElementSpans::longest <= capacity);
 
   C x[3][length];  // places and axes of the neighbours
@@ -57,7 +58,9 @@ struct Centre {
   T n[3];
 };
 
-VEC_INLINE std::size_t length_of(const ElementSpan& span) { return static_cast<std::size_t>(span.end - span.begin); }
+VEC_INLINE std::size_t length_of(const ElementSpan& span) {
+  return static_cast<std::size_t>(span.end - span.begin);
+}
 
 template <class T>
 VEC_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span, std::size_t at, Block<T>& to) {
@@ -79,7 +82,7 @@ VEC_INLINE void copy_span(const PaperElements<T>& from, const ElementSpan& span,
 // The forces on the elements of a run, the first of them at `first` in the chunk.
 template <class T>
 VEC_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, std::size_t first, T* to,
-                        std::size_t stride) {
+                         std::size_t stride) {
   const ops::CappedTag<T, 8> d;
   const std::size_t lanes = ops::Lanes(d);
   for (std::size_t m = 0; m < count; m += lanes) {

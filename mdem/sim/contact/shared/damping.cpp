@@ -60,8 +60,8 @@ VEC_INLINE ops::Vec<D> strength(D d, const ContactViscosity& c, const Vec3<ops::
   using T = ops::TFromD<D>;
   const auto set = [&](double x) VEC_ATTR { return ops::Set(d, static_cast<T>(x)); };
   const auto distance = ops::Sqrt(dot(separation, separation));
-  const auto y =
-      ops::Min(ops::Max(ops::Mul(ops::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), ops::Zero(d)), set(1));
+  const auto y = ops::Min(
+      ops::Max(ops::Mul(ops::Sub(distance, set(c.inner)), set(1 / (c.outer - c.inner))), ops::Zero(d)), set(1));
   const auto weight = ops::NegMulAdd(ops::Mul(y, y), ops::NegMulAdd(set(2), y, set(3)), set(1));
   return ops::Mul(set(-c.eta), weight);
 }
@@ -119,7 +119,8 @@ struct Floats {
     const D d;
     const ops::RebindToSigned<D> whole;
     const Vec3<Position> in_units = j - i;
-    const auto number = [&](const Position& modulo) VEC_ATTR { return ops::ConvertTo(d, ops::BitCast(whole, modulo)); };
+    const auto number = [&](const Position& modulo)
+                            VEC_ATTR { return ops::ConvertTo(d, ops::BitCast(whole, modulo)); };
     return ops::Set(d, unit) * Vec3<V>{number(in_units.x), number(in_units.y), number(in_units.z)};
   }
 };
@@ -188,8 +189,8 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
   return sum;
 }
 
-// Copies the elements of a part, whole vectors at a time. The last vector may reach beyond the part; the elements of the
-// next part then overwrite its surplus lanes.
+// Copies the elements of a part, whole vectors at a time. The last vector may reach beyond the part; the elements
+// of the next part then overwrite its surplus lanes.
 VEC_INLINE void take(const State& s, const BufferRange& of, double per_unit, DampedElements& e) {
   const ops::CappedTag<double, 8> d;
   const ops::RebindToUnsigned<decltype(d)> bits;

@@ -17,7 +17,7 @@ namespace ropewalk {
 // The pairs (i + l, j + l + c) for l < lanes and c < offsets, if j + l + c is one of `partners`.
 struct DampedBlock {
   static constexpr int max_lanes = 16;  // lanes of the widest vectors
-  int i = 0, j = 0, at_i = 0;      // elements; i's entry in the buffer
+  int i = 0, j = 0, at_i = 0;           // elements; i's entry in the buffer
   short lanes = 0, offsets = 0;
   BufferRange partners;
 };
@@ -56,10 +56,10 @@ struct DampedElements {
   std::size_t bytes() const { return 3 * x.capacity() * sizeof(x[0]) + 6 * vx.capacity() * sizeof(vx[0]); }
 };
 
-// Adds damping forces to the buffer, with the widest vectors of the machine. Up to DampedBlock::max_lanes entries on
-// either side of a part are read and written back unchanged. Returns the power, eV/ps.
-double contact_damping(const ContactViscosity& viscosity, const State& state, const std::vector<DampedBlock>& blocks,
-                     ContactBuffer<double>& out);
+// Adds damping forces to the buffer, with the widest vectors of the machine. Up to DampedBlock::max_lanes entries
+// on either side of a part are read and written back unchanged. Returns the power, eV/ps.
+double contact_damping(const ContactViscosity& viscosity, const State& state,
+                       const std::vector<DampedBlock>& blocks, ContactBuffer<double>& out);
 
 // The blocks of a chunk, the ranges of their elements, and the unit of the integer positions (nm).
 struct DampedChunk {
@@ -69,6 +69,6 @@ struct DampedChunk {
 };
 // The same in single precision.
 double contact_damping(const ContactViscosity& viscosity, const State& state, const DampedChunk& of,
-                     DampedElements& elements, ContactBuffer<float>& out);
+                       DampedElements& elements, ContactBuffer<float>& out);
 
 }  // namespace ropewalk

@@ -18,7 +18,9 @@ class ElementSpans {
 
   Span<ElementSpan> spans(int i) const { return entries_of(i, begin_, spans_); }
   std::size_t count() const { return spans_.size(); }
-  std::size_t bytes() const { return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t); }
+  std::size_t bytes() const {
+    return spans_.capacity() * sizeof(ElementSpan) + begin_.capacity() * sizeof(std::size_t);
+  }
 
  private:
   std::vector<std::size_t> begin_;

@@ -1,13 +1,13 @@
-// Coordinates of the kernels in single precision: whole numbers of a unit (nm), modulo 2^32. Only differences between
-// elements near each other are used. They are exact, however large the scene is and wherever it lies.
+// Coordinates of the kernels in single precision: whole numbers of a unit (nm), modulo 2^32. Only differences
+// between elements near each other are used. They are exact, however large the scene is and wherever it lies.
 #pragma once
 
 #include <cstdint>
 
 namespace ropewalk {
 
-// x + rounds_to_whole has the whole number nearest to x in front of the last bits_behind_point bits of its mantissa,
-// for |x| < 2^49: 1.5 * 2^50, and a half since the bits behind the point are cut off.
+// x + rounds_to_whole has the whole number nearest to x in front of the last bits_behind_point bits of its
+// mantissa, for |x| < 2^49: 1.5 * 2^50, and a half since the bits behind the point are cut off.
 inline constexpr int bits_behind_point = 2;
 inline constexpr double rounds_to_whole = 0x1.8p50 + 0.5;
 

@@ -21,7 +21,9 @@ class ContactViscosityTerm : public ForceTerm {
   void list_chunk(std::size_t chunk, const ChunkPairs& pairs) override {
     DampedBlocks blocks;
     std::vector<BufferRange> at(static_cast<std::size_t>(pairs.entries()));  // by the first entry of a range
-    const auto mark = [&](const BufferRange& range) { at[static_cast<std::size_t>(range.begin + range.shift)] = range; };
+    const auto mark = [&](const BufferRange& range) {
+      at[static_cast<std::size_t>(range.begin + range.shift)] = range;
+    };
     pairs.each([&](const NearElements& near) {
       BufferRange own = near.own;
       own.end = std::min(own.end, near.own_end);
@@ -52,9 +54,9 @@ class ContactViscosityTerm : public ForceTerm {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
       const Vector3 separation = s.position[j] - s.position[i];
       if (!(separation.norm() < reach)) return;
-      add_pair(viscosity_.force(separation, s.velocity[i], s.angular_velocity[i], s.velocity[j],
-                                s.angular_velocity[j]),
-               i, j, out);
+      add_pair(
+          viscosity_.force(separation, s.velocity[i], s.angular_velocity[i], s.velocity[j], s.angular_velocity[j]),
+          i, j, out);
     });
     return true;
   }

@@ -1,5 +1,5 @@
-// The dampings of an interaction that are force terms. The forms are those of model/damping.hpp. The damping of bonds
-// is computed with the bonds.
+// The dampings of an interaction that are force terms. The forms are those of model/damping.hpp. The damping of
+// bonds is computed with the bonds.
 #pragma once
 
 #include <memory>

@@ -19,8 +19,8 @@
 //
 //   U = K_s delta^2 (1 - cos(z/delta)) + K_g delta^2 (1 - cos(y/delta))
 //
-// with z = s and y = g from where the contact began. The laws agree for small slips. Smooth tubes that are led past each
-// other have the corrugation: their force comes back in each period, and its mean is the drag.
+// with z = s and y = g from where the contact began. The laws agree for small slips. Smooth tubes that are led past
+// each other have the corrugation: their force comes back in each period, and its mean is the drag.
 //
 //   K_s = (F_s l + n F_end)/delta,   K_g = F_g l/delta
 //

@@ -15,8 +15,8 @@ class LocalDampingTerm : public ForceTerm {
                    const ForceRows& out) const override {
     const auto brake = [&](const Column& force, const Column& velocity, Column& sum) {
       for (std::ptrdiff_t i = part.begin; i < part.end; ++i)
-        sum[static_cast<std::size_t>(i - out.origin)] +=
-            pfc_local(alpha_, force[static_cast<std::size_t>(i - total.origin)], velocity[static_cast<std::size_t>(i)]);
+        sum[static_cast<std::size_t>(i - out.origin)] += pfc_local(
+            alpha_, force[static_cast<std::size_t>(i - total.origin)], velocity[static_cast<std::size_t>(i)]);
     };
     const auto brake_all = [&](const Vec3Array& force, const Vec3Array& velocity, Vec3Array& sum) {
       brake(force.x, velocity.x, sum.x);

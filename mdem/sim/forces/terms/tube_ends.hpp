@@ -1,5 +1,5 @@
-// The ends of tubes that follow one another in a strand (TubeGroups::strand_begin): their van der Waals contact, end
-// against end.
+// The ends of tubes that follow one another in a strand (TubeGroups::strand_begin): their van der Waals contact,
+// end against end.
 //
 //   U = V(s) W(q),   d = (x_j - a_j t_j/2) - (x_i + a_i t_i/2),   n = (t_i + t_j)/|t_i + t_j|,
 //   s = d . n,   q = |d - s n|^2/(r_i + r_j)^2

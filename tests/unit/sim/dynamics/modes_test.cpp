@@ -8,8 +8,8 @@
 
 #include "observe/mode_shape.hpp"
 #include "plan/sliding_rope.hpp"
-#include "scene/loads/fix.hpp"
 #include "scene/ends/twist.hpp"
+#include "scene/loads/fix.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {

@@ -51,8 +51,8 @@ TEST(Halved, TopologyKeepsMassAndLength) {
   }
 }
 
-// An element comes between every two. The old centres and axes keep their bits, each new bond has half of the stretch and
-// twist of an old one, and a rigid motion stays rigid.
+// An element comes between every two. The old centres and axes keep their bits, each new bond has half of the
+// stretch and twist of an old one, and a rigid motion stays rigid.
 TEST(Halved, ElementsBetweenLeaveTheOthersInPlace) {
   Topology coarse = published_topology();
   coarse.add_tube(5);

@@ -5,8 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "scene/loads/fix.hpp"
 #include "scene/ends/twist.hpp"
+#include "scene/loads/fix.hpp"
 #include "sim/contact/line/law.hpp"
 #include "unit/support.hpp"
 

@@ -1,12 +1,13 @@
 // Nodes from elements, and forces on elements from those on nodes, for any number of nodes and every instruction
 // set.
+#include "sim/contact/line/nodes.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <type_traits>
 
 #include "sim/contact/line/engine.hpp"
-#include "sim/contact/line/nodes.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
