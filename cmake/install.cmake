@@ -50,7 +50,7 @@ else()
 endif()
 
 # The libraries, for programs of your own: Ropewalk::campaign is the highest, and brings all others.
-set(libraries model core sim observe io report scene plan run campaign)
+set(libraries model sim observe io report scene plan run campaign)
 foreach(library ${libraries})
   set_target_properties(ropewalk_${library} PROPERTIES EXPORT_NAME ${library})
   list(APPEND library_targets ropewalk_${library})

@@ -44,13 +44,13 @@ int Topology::original_of(int element) const {
   if (groups.images == 0) return element;
   const InSlice at(*this, element);
   if (at.is_own()) return element;
-  return at.place < images ? element + at.own : element - at.own;
+  return at.place < groups.images ? element + at.own : element - at.own;
 }
 
 int Topology::image_above(int element) const {
   if (groups.images == 0) return -1;
   const InSlice at(*this, element);
-  return at.is_own() && at.place < 2 * images ? element + at.own : -1;
+  return at.is_own() && at.place < 2 * groups.images ? element + at.own : -1;
 }
 
 int Topology::image_below(int element) const {
