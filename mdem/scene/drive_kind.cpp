@@ -9,6 +9,7 @@
 
 #include "model/error.hpp"
 #include "scene/scene.hpp"
+#include "sim/forces/shipped_terms.hpp"
 
 namespace ropewalk {
 
@@ -110,7 +111,9 @@ void read_listed_drives(const DriveKind& kind, const std::vector<TomlTable>& tab
   drive = drive->without(pairs);
 }
 
-std::vector<TermKind> shipped_term_kinds() {
+namespace {
+
+std::vector<TermKind> terms_of_shipped_drives() {
   std::vector<TermKind> kinds;
   for (const DriveKind& drive : shipped_drives())
     if (auto kind = term_kind_of(drive)) kinds.push_back(*std::move(kind));
@@ -118,6 +121,11 @@ std::vector<TermKind> shipped_term_kinds() {
   kinds.push_back({"ends", "van der Waals energy of the ends of tubes in line"});
   return kinds;
 }
+
+// A program that writes a log reads scenes, and so has this file.
+[[maybe_unused]] const bool at_start = set_shipped_terms(&terms_of_shipped_drives);
+
+}  // namespace
 
 bool Drive::holds_elements() const {
   if (ends() == Ends::clamped || ends() == Ends::loaded) return true;

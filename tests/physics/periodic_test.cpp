@@ -88,7 +88,7 @@ struct Longer {
                  length = slice_length(of, slice.p.state);
     topology.types = of.types;
     topology.groups.strand_begin = {0};
-    topology.groups.ends_meet = of.ends_meet;
+    topology.groups.ends_meet = of.groups.ends_meet;
     state = State(static_cast<std::size_t>(of.strands() * long_strand));
     const auto in_slice = [&](int k) { return k < g + n ? k : g + (k - g) % n; };
     for (int s = 0; s < of.strands(); ++s) {
@@ -478,8 +478,9 @@ TEST(PeriodicSlice, ABathHoldsItsLength) {
     const auto below = static_cast<std::size_t>(free.slice.own), above = static_cast<std::size_t>(images);
     double square = 0, both = 0;
     constexpr int draws = 4000;
+    std::vector<double> variables = bath->initial_variables();
     for (int k = 0; k < draws; ++k, ++s.step) {
-      bath->apply(free.slice.p.topology, 100, s);
+      bath->apply(free.slice.p.topology, 100, s, variables);
       square += std::pow(free.rate(s), 2) / draws;
       both += free.rate(s) * (s.velocity.z[above] - s.velocity.z[below]) / draws;
     }
@@ -574,7 +575,7 @@ TEST(PeriodicSlice, EnergyPerMassIsThatOfOnePeriod) {
     State stretched = slice.p.state;
     for (double& z : stretched.position.z) z *= 1 + strain;
     const Simulation s(slice.p.topology, slice.p.interaction, {}, stretched, slice.p.time_step);
-    EnergyAccount account = account_of(slice.scene, s, first.forces().energy, 0);
+    EnergyAccount account = account_of(s, first.forces().energy, 0);
     account.period = EnergyAccount::Period{*energies_of_period(s), *energies_of_period(first)};
     account.ends[upper_end].force.z() = 3, account.ends[lower_end].force.z() = -3;
     return log_row(observer, slice.scene, slice.p.topology, stretched, account);

@@ -11,7 +11,7 @@
 #include "model/contract.hpp"
 #include "scene/bounds.hpp"
 #include "scene/drive_kind.hpp"
-#include "scene/ends/end_moment.hpp"
+#include "scene/end_moment.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"

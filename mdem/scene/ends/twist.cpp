@@ -5,7 +5,7 @@
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
 #include "scene/drive_kind.hpp"
-#include "scene/ends/end_moment.hpp"
+#include "scene/end_moment.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/drive_kind.hpp"
-#include "scene/ends/end_moment.hpp"
+#include "scene/end_moment.hpp"
 #include "scene/scene.hpp"
 
 namespace ropewalk {

@@ -1,21 +1,20 @@
 #include "sim/forces/force_term.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "model/contract.hpp"
+#include "sim/forces/shipped_terms.hpp"
 
 namespace ropewalk {
 
-// Those of the shipped drives (scene/drive_kind.cpp). They are called for by name: the linker would leave a
-// file that registers itself out of each program that needs nothing else from it, and the log would lose its
-// columns there.
-std::vector<TermKind> shipped_term_kinds();
-
 namespace {
 
+std::vector<TermKind> (*shipped_terms)() = nullptr;  // there before any static variable is made
+
 std::vector<TermKind>& all_kinds_of_terms() {
-  static std::vector<TermKind> kinds = shipped_term_kinds();
+  static std::vector<TermKind> kinds;
   return kinds;
 }
 
@@ -27,7 +26,21 @@ TermState ForceTerm::halved(const TermState& coarse, const std::vector<int>& hei
   return fine;
 }
 
-const std::vector<TermKind>& term_kinds() { return all_kinds_of_terms(); }
+bool set_shipped_terms(std::vector<TermKind> (*terms)()) {
+  shipped_terms = terms;
+  return true;
+}
+
+const std::vector<TermKind>& term_kinds() {
+  // Those that add_term_kind() added stand behind the shipped ones, whichever came first.
+  [[maybe_unused]] static const bool once = [] {
+    std::vector<TermKind>& all = all_kinds_of_terms();
+    std::vector<TermKind> first = shipped_terms ? shipped_terms() : std::vector<TermKind>();
+    all.insert(all.begin(), std::make_move_iterator(first.begin()), std::make_move_iterator(first.end()));
+    return true;
+  }();
+  return all_kinds_of_terms();
+}
 
 bool add_term_kind(TermKind kind) {
   all_kinds_of_terms().push_back(std::move(kind));

@@ -174,8 +174,8 @@ TEST(RopeOfFiniteTubes, HasSectionsAndKeepsThemInAStateFile) {
   State state;
   read_state_csv(file.string(), read, state);
   EXPECT_EQ(read.tube_begin, p.topology.tube_begin);
-  EXPECT_EQ(read.strand_begin, p.topology.groups.strand_begin);
-  EXPECT_NEAR(read.strand_holes, p.topology.groups.strand_holes, 1e-9);
+  EXPECT_EQ(read.groups.strand_begin, p.topology.groups.strand_begin);
+  EXPECT_NEAR(read.groups.strand_holes, p.topology.groups.strand_holes, 1e-9);
   std::string damaged = state_csv(p.topology, p.state);
   const auto at = damaged.find("strands_begin_with_tubes: ");
   ASSERT_NE(at, std::string::npos);

@@ -1,4 +1,4 @@
-#include "scene/ends/end_moment.hpp"
+#include "scene/end_moment.hpp"
 
 #include <fmt/format.h>
 
