@@ -63,6 +63,10 @@ double DemandsAhead::Range::farthest(double more) const {
 DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p)
     : law_(p.topology.types[0]), bond_(p.topology.types[0].bond), drives_(end_drives(p.loads, p.topology)) {
   tubes_ = p.topology.tubes();
+  for (const End end : {lower_end, upper_end})
+    for (std::size_t axis = 0; axis < 6; ++axis) loads_[end][axis] = load_of_each(drives_, end, axis);
+  turned_apart_ = moved_apart(drives_, LoadEffect::about_z);
+  drawn_apart_ = moved_apart(drives_, LoadEffect::z);
   for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
   period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
   rope_radius_ = tubes_ > 1 ? rope_radius_of(p) : 0.0;
@@ -125,7 +129,7 @@ void DemandsAhead::read_start(const Scene& scene, const Prepared& p) {
 }
 
 double DemandsAhead::turned(double time) const {
-  double angle = moved_apart(drives_, LoadEffect::about_z).value(time) / period_;
+  double angle = turned_apart_.value(time) / period_;
   for (const LoadEffect& effect : inner_)
     if (is_moved(effect, LoadEffect::about_z))
       angle += effect.axes[LoadEffect::about_z].course.value(time) / length_;
@@ -135,8 +139,7 @@ double DemandsAhead::turned(double time) const {
 // On each tube, positive: a tension, or a couple that winds to the right. Two ends that are loaded balance one
 // another, and the larger counts.
 double DemandsAhead::axial(std::size_t axis, double time) const {
-  const double upper = load_of_each(drives_, upper_end, axis).value(time),
-               lower = -load_of_each(drives_, lower_end, axis).value(time);
+  const double upper = loads_[upper_end][axis].value(time), lower = -loads_[lower_end][axis].value(time);
   double out = std::fabs(upper) >= std::fabs(lower) ? upper : lower;
   for (const LoadEffect& effect : inner_)
     if (is_loaded(effect, axis)) out += effect.axes[axis].course.value(time);
@@ -144,8 +147,8 @@ double DemandsAhead::axial(std::size_t axis, double time) const {
 }
 
 double DemandsAhead::sideways(std::size_t axis, double time) const {
-  double out = std::max(std::fabs(load_of_each(drives_, upper_end, axis).value(time)),
-                        std::fabs(load_of_each(drives_, lower_end, axis).value(time)));
+  double out =
+      std::max(std::fabs(loads_[upper_end][axis].value(time)), std::fabs(loads_[lower_end][axis].value(time)));
   for (const LoadEffect& effect : inner_)
     if (is_loaded(effect, axis)) out += std::fabs(effect.axes[axis].course.value(time));
   return out;
@@ -171,7 +174,7 @@ Demands DemandsAhead::at(double time) const {
   const double more = turned(time), winding = winding_ + more;
   const double twist = twist_.farthest(more);
   if (length_kept_) {
-    const double drawn = moved_apart(drives_, LoadEffect::z).value(time) / period_,
+    const double drawn = drawn_apart_.value(time) / period_,
                  along = 1 + (drawn < 0 && tubes_ > 0 ? std::max(drawn, -column_) : drawn);
     const double outer = std::hypot(along, rope_radius_ * winding) / std::hypot(1, rope_radius_ * winding_) - 1;
     const double strain = std::max(strain_.farthest(along - 1), strain_.farthest(outer));

@@ -7,6 +7,7 @@
 // no farther than its tubes twist. These are upper estimates of motions without shocks.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "plan/tube_law.hpp"
@@ -47,7 +48,9 @@ class DemandsAhead {
   TubeLaw law_;
   BondStiffness bond_;
   EndDrives drives_;
-  std::vector<LoadEffect> inner_;  // of loads on elements that are no ends
+  std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
+  Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
+  std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
   bool length_kept_ = false, keeps_tilt_ = false, upright_ = true;
   int tubes_ = 0;

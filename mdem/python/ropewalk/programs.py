@@ -159,7 +159,8 @@ def gather(
     Arguments:
         campaign: a campaign, or its directory
         columns: observables; empty: all
-        mean_ps: means over the last rows of so much time, ps; None: the last row
+        mean_ps: means over the last rows of so much time, ps, each with its standard error in a column NAME_error, which is
+            nan where that time is too short for one; None: the last row
         series: all rows of all logs instead of the ends
     """
     directory = campaign.path if isinstance(campaign, Campaign) else os.fspath(campaign)
