@@ -65,7 +65,8 @@ TEST_F(Campaign, TableIsTheSameAfterInterruptions) {
   EXPECT_EQ(lines(means.out)[0],
             "point,rope.tubes,thermostat.temperature_K,start.seed,status,time_ps,kinetic_eV,kinetic_eV_error,"
             "limits_passed");
-  EXPECT_NE(means.err.find("_seed-1: 4 ps are too short for an error of kinetic_eV"), std::string::npos) << means.err;
+  EXPECT_NE(means.err.find("_seed-1: 4 ps are too short for an error of kinetic_eV"), std::string::npos)
+      << means.err;
   EXPECT_EQ(lines(run("gather whole --series --columns time_ps").out).size(), 1 + 8 * 13u);
   EXPECT_EQ(run("gather parts --columns nothing").code, 2);
 }

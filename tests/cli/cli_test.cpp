@@ -82,8 +82,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
-        std::pair{"help scen", "did you mean scene?"},
-        std::pair{"help lnks", "did you mean links?"},
+        std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
@@ -350,7 +349,8 @@ TEST_F(Cli, ADeviceRunsResumesAndIsNamed) {
   EXPECT_THAT(on.err, ::testing::Not(HasSubstr("note: it goes on")));
   EXPECT_EQ(slurp(dir / "half/log.csv"), slurp(dir / "d/log.csv"));
   EXPECT_TRUE(slurp(dir / "half/final.csv") == slurp(dir / "d/final.csv"));
-  EXPECT_THAT(slurp(dir / "d/manifest.json"), HasSubstr("\"device\": \"this processor, by the kernels of a device\""));
+  EXPECT_THAT(slurp(dir / "d/manifest.json"),
+              HasSubstr("\"device\": \"this processor, by the kernels of a device\""));
   EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("by the kernels of a device"));
   const auto last = [&](const char* of) { return ropewalk::read_log((dir / of / "log.csv").string()).back(); };
   EXPECT_NEAR(last("d")["twist_eV"], last("here")["twist_eV"], 1e-4 * last("here")["twist_eV"]);
@@ -373,7 +373,8 @@ TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
   }
   spit(dir / "hot.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 20\n"
-       "[damping]\nbond_damping_per_ps = 0\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n[run]\nduration_ps = 1\n");
+       "[damping]\nbond_damping_per_ps = 0\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = "
+       "1\n[run]\nduration_ps = 1\n");
   spit(dir / "still.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 16\n"
        "[run]\nmode = \"relax\"\n");
@@ -1114,8 +1115,8 @@ hold_ps = 10
   EXPECT_EQ(run("errors rope.toml").code, 2);
 }
 
-// One tube is drawn out of seven against friction from atoms: the energy that slips take goes as the strength, which is
-// known to 11 %. A number of the scene has an error too, and the others are named.
+// One tube is drawn out of seven against friction from atoms: the energy that slips take goes as the strength,
+// which is known to 11 %. A number of the scene has an error too, and the others are named.
 TEST_F(Cli, ErrorsOfFrictionAndOfTheSceneAreCarried) {
   spit(dir / "rope.toml", R"(
 format = "ropewalk-scene-1"
