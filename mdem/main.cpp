@@ -125,8 +125,11 @@ void add_new(CLI::App& app, Verbs& v) {
 }
 
 void add_check(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("check", "Read a scene, say what it would do and how long it would take");
-  c->add_option("scene", v.check_scene, "Scene file (TOML)")->required();
+  CLI::App* c = app.add_subcommand(
+      "check",
+      "Read a scene, say what it would do and how long it would take; or judge a run by the [[expect]] "
+      "tables of its scene");
+  c->add_option("scene", v.check_scene, "Scene file (TOML), or the directory of a finished run")->required();
   c->callback([&v] { v.code = check_command(v.check_scene); });
 }
 
@@ -601,7 +604,8 @@ int main(int argc, char** argv) {
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
-      "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 128 + signal.");
+      "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 8 done but not as "
+      "[[expect]] says, 128 + signal.");
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);

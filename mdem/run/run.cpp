@@ -80,6 +80,7 @@ RunResult Run::finish() {
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
+    r.expected = judge(parts_.moving.scene.expected, r.directory);
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
     if (parts_.last_row["links_broken"] + parts_.last_row["bonds_broken"] > 0)
       r.strength = strength_words(read_log(r.directory.log()));

@@ -17,6 +17,7 @@ void print_results(const RunResult& r) {
   if (!r.network.empty()) print("At the end " + r.network + ".\n");
   if (!r.damping.empty()) print(r.damping + "\n");
   if (!r.plan.empty()) print(r.plan + "\n");
+  for (const Judgement& j : r.expected) print(j.words + "\n");
   const std::string time = r.relaxes ? "" : fmt::format("{:.1f} ps, ", r.time_ps);
   print(fmt::format("{}{} steps, {}{:.0f} s. Report: {}\n", r.reason.empty() ? "" : r.reason + "\n", r.steps, time,
                     r.wall_seconds, r.directory.report()));
@@ -43,7 +44,7 @@ int tell_end(const RunResult& r) {
       print_results(r);
       if (r.beyond > far_beyond)
         tell(fmt::format("{:.3g} times a limit was reached: these are not the results of such tubes", r.beyond));
-      return 0;
+      return missed(r.expected) > 0 ? not_as_expected : 0;
     case RunEnd::incomplete:
       print_results(r);
       tell(fmt::format("the run is done, but for {}; write them with: ropewalk resume {}", r.missing, dir));

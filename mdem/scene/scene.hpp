@@ -15,6 +15,7 @@
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
 #include "scene/drive.hpp"
+#include "scene/expectation.hpp"
 #include "scene/source.hpp"
 #include "scene/stop_rule.hpp"
 #include "sim/dynamics/relax_goal.hpp"
@@ -96,6 +97,7 @@ struct Scene {
   ObserveOptions observe;
   LimitOptions limits;
   std::vector<StopRule> stops;
+  std::vector<Expectation> expected;
 
   const ParameterSet& parameters() const { return sets.front(); }
   bool from_file() const { return source && !source->file().empty(); }  // a state with velocities of its own

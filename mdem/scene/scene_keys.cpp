@@ -24,7 +24,7 @@ std::vector<SceneTable> scene_tables() {
     tables.push_back(table);
   for (const DriveKind& kind : drive_kinds()) tables.push_back(kind.table());
   for (const SceneTable& table :
-       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc()})
+       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc(), expect_table().doc()})
     tables.push_back(table);
   return tables;
 }

@@ -80,6 +80,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
   for (const TomlTable& t : top.tables("stop")) scene.stops.push_back(stop_table().read(t, scene));
+  for (const TomlTable& t : top.tables("expect")) scene.expected.push_back(expect_table().read(t, scene));
 }
 
 }  // namespace

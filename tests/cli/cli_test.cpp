@@ -82,8 +82,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
-        std::pair{"help scen", "did you mean scene?"},
-        std::pair{"help lnks", "did you mean links?"},
+        std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
     EXPECT_EQ(o.code, 2) << line;
@@ -315,6 +314,26 @@ TEST_F(Cli, ARunThatARuleEndedIsNotTakenFurther) {
   }
 }
 
+// A scene that carries its result is a test of the program that runs it.
+TEST_F(Cli, ARunThatIsNotAsExpectedHasAnExitCode) {
+  const std::string right = "[[expect]]\ncolumn = \"time_ps\"\nvalue = 1\ntolerance_percent = 1\n";
+  small_rope("s.toml", "duration_ps = 1\n" + right);
+  EXPECT_THAT(run("check s.toml").out, HasSubstr("expected: time_ps 1 ± 0.01 at the end"));
+  const Outcome good = run("run s.toml --out d --quiet");
+  EXPECT_EQ(good.code, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("at the end, as expected: 1 ± 0.01"));
+  EXPECT_EQ(run("check d").code, 0);
+  small_rope("t.toml", "duration_ps = 1\n" + right +
+                           "[[expect]]\ncolumn = \"time_ps\"\nvalue = 7\ntolerance = 1\nat_ps = 0.5\n");
+  const Outcome bad = run("run t.toml --out e --quiet --until 0.6");
+  EXPECT_EQ(bad.code, 0) << "it is not at its end";
+  EXPECT_EQ(run("check e").code, 2);
+  EXPECT_EQ(run("resume e --quiet").code, 8);
+  const Outcome judged = run("check e");
+  EXPECT_EQ(judged.code, 8);
+  EXPECT_THAT(judged.out, HasSubstr("at 0.5 ps, not as expected: 7 ± 1"));
+}
+
 // The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0
 // that looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
@@ -350,7 +369,8 @@ TEST_F(Cli, ADeviceRunsResumesAndIsNamed) {
   EXPECT_THAT(on.err, ::testing::Not(HasSubstr("note: it goes on")));
   EXPECT_EQ(slurp(dir / "half/log.csv"), slurp(dir / "d/log.csv"));
   EXPECT_TRUE(slurp(dir / "half/final.csv") == slurp(dir / "d/final.csv"));
-  EXPECT_THAT(slurp(dir / "d/manifest.json"), HasSubstr("\"device\": \"this processor, by the kernels of a device\""));
+  EXPECT_THAT(slurp(dir / "d/manifest.json"),
+              HasSubstr("\"device\": \"this processor, by the kernels of a device\""));
   EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("by the kernels of a device"));
   const auto last = [&](const char* of) { return ropewalk::read_log((dir / of / "log.csv").string()).back(); };
   EXPECT_NEAR(last("d")["twist_eV"], last("here")["twist_eV"], 1e-4 * last("here")["twist_eV"]);
@@ -373,7 +393,8 @@ TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
   }
   spit(dir / "hot.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 20\n"
-       "[damping]\nbond_damping_per_ps = 0\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n[run]\nduration_ps = 1\n");
+       "[damping]\nbond_damping_per_ps = 0\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = "
+       "1\n[run]\nduration_ps = 1\n");
   spit(dir / "still.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 16\n"
        "[run]\nmode = \"relax\"\n");
