@@ -155,7 +155,8 @@ void add_run(CLI::App& app, Verbs& v) {
 
 void add_errors(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
-      "errors", "Errors of a finished run's results that follow from those of its parameters: repeats it");
+      "errors",
+      "Errors of a finished run's results that follow from those of its sets, files and typed numbers: repeats it");
   c->add_option("dir", v.errors.dir, "Directory of the run")->required();
   c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
   c->add_flag("--again", v.errors.again, "Repeat also what is finished");
@@ -381,7 +382,7 @@ void add_rest(CLI::App& app, Verbs& v) {
   c->add_option("--viscosity", v.rest.viscosity,
                 "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
       ->check(CLI::NonNegativeNumber);
-  c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides agree")
+  c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides are at rest and agree")
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());

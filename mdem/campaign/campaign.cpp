@@ -13,6 +13,7 @@
 #include "io/log.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
+#include "observe/time_mean.hpp"
 #include "plan/scene_edit.hpp"
 #include "report/runs_page.hpp"
 #include "run/limit_watch.hpp"
@@ -35,26 +36,47 @@ std::vector<std::size_t> columns_of(const GatherOptions& options) {
   return out;
 }
 
-// Means over the last rows; counts are not averaged.
-std::vector<double> end_of(const std::vector<LogRow>& log, double mean_ps) {
-  std::vector<double> values = log.back().values();
-  if (!(mean_ps > 0)) return values;
-  const double from = log.back()["time_ps"] - mean_ps - 1e-9;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (observables()[k].whole || observables()[k].name == std::string("time_ps")) continue;
-    double sum = 0;
-    int count = 0;
-    for (const LogRow& row : log)
-      if (row["time_ps"] >= from) sum += row.values()[k], ++count;
-    values[k] = sum / count;
-  }
-  return values;
+// Counts and times are not averaged.
+bool has_mean(std::size_t column) {
+  return !observables()[column].whole && observables()[column].name != std::string("time_ps");
 }
 
-std::string cells_of(const std::vector<double>& values, const std::vector<std::size_t>& columns) {
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string("nan"); }
+
+std::string cells_of(const LogRow& row, const std::vector<std::size_t>& columns) {
   std::string text;
-  for (const std::size_t k : columns)
-    text += std::isfinite(values[k]) ? fmt::format(",{}", values[k]) : std::string(",nan");
+  for (const std::size_t k : columns) text += "," + number(row.values()[k]);
+  return text;
+}
+
+// Means over the last rows, each with its error.
+std::string mean_cells(const std::vector<LogRow>& log, double mean_ps, const std::vector<std::size_t>& columns,
+                       const std::string& point, std::vector<std::string>* short_of) {
+  const double from = log.back()["time_ps"] - mean_ps - 1e-9;
+  constexpr int most_names = 5;
+  std::string text, names;
+  int without = 0;
+  double needed = 0;  // ps
+  for (const std::size_t k : columns) {
+    if (!has_mean(k)) {
+      text += "," + number(log.back().values()[k]);
+      continue;
+    }
+    std::vector<double> values, times;
+    for (const LogRow& row : log)
+      if (row["time_ps"] >= from) values.push_back(row.values()[k]), times.push_back(row["time_ps"]);
+    const TimeMean mean = time_mean(values);
+    text += "," + number(mean.mean) + "," + number(mean.error);
+    if (!std::isfinite(mean.mean) || std::isfinite(mean.error)) continue;
+    if (++without <= most_names) names += fmt::format("{}{}", names.empty() ? "" : ", ", observables()[k].name);
+    if (times.size() > 1)
+      needed = std::max(needed,
+                        mean.rows_needed * (times.back() - times.front()) / static_cast<double>(times.size() - 1));
+  }
+  if (without > most_names) names += fmt::format(" and {} more columns", without - most_names);
+  if (short_of && without > 0)
+    short_of->push_back(fmt::format("{}: {:.3g} ps are too short for an error of {}{}", point, mean_ps, names,
+                                    needed > 0 ? fmt::format("; about {:.2g} ps would do", needed) : ""));
   return text;
 }
 
@@ -183,7 +205,13 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
   std::string text = "point";
   for (const std::string& key : sweep.keys()) text += "," + csv_cell(key);
   text += ",status";
-  for (const std::size_t k : columns) text += fmt::format(",{}", observables()[k].name);
+  const bool means = options.mean_ps > 0 && !options.series;
+  std::size_t cells = 0;
+  for (const std::size_t k : columns) {
+    text += fmt::format(",{}", observables()[k].name);
+    if (means && has_mean(k)) text += fmt::format(",{}_error", observables()[k].name), ++cells;
+    ++cells;
+  }
   text += options.series ? "\n" : ",limits_passed\n";
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
@@ -192,7 +220,7 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     begin += "," + progress_of(run).status;
     const std::vector<LogRow> log = fs::exists(run.log()) ? read_log(run.log()) : std::vector<LogRow>();
     if (options.series) {
-      for (const LogRow& row : log) text += begin + cells_of(row.values(), columns) + "\n";
+      for (const LogRow& row : log) text += begin + cells_of(row, columns) + "\n";
       continue;
     }
     if (options.mean_ps > 0 && stands_still(log))
@@ -200,7 +228,11 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
                        "is the log of a relaxation: its rows are no times to average over",
                        "leave --mean out, and the table has their ends");
     text += begin;
-    text += log.empty() ? std::string(columns.size(), ',') : cells_of(end_of(log, options.mean_ps), columns);
+    if (log.empty())
+      text += std::string(cells, ',');
+    else
+      text += means ? mean_cells(log, options.mean_ps, columns, p.name, options.short_of)
+                    : cells_of(log.back(), columns);
     text += "," + csv_cell(limits_of(run)) + "\n";
   }
   return text;

@@ -54,9 +54,13 @@ Sweep read_campaign(const CampaignDirectory& dir);
 
 // Chooses the rows of a log that the table shows.
 struct GatherOptions {
-  double mean_ps = 0;                // mean over the last rows of so much time; 0: the last row
+  // Mean over the last rows of so much time, each with a column NAME_error (observe/time_mean.hpp); 0: the last
+  // row.
+  double mean_ps = 0;
   bool series = false;               // every row of every log instead
   std::vector<std::string> columns;  // of the log; empty: all
+  // Gets a sentence for each point whose means have no error; null: nobody asks.
+  std::vector<std::string>* short_of = nullptr;
 };
 // One line per point: its name, the values of the keys that vary, how it ended, the observables, the limits passed.
 // A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.

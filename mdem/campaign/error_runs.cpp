@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
-#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/manifest.hpp"
 #include "io/parameters_toml.hpp"
+#include "io/removal.hpp"
 #include "model/error.hpp"
+#include "plan/scene_edit.hpp"
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
@@ -23,15 +25,17 @@ namespace {
 namespace fs = std::filesystem;
 
 // Relative change of a parameter: large enough that rounding and the way that a motion takes do not count.
-constexpr double least_step = 0.005;
-
-void multiply(ParameterSet& set, const std::vector<std::string>& keys, double factor) {
-  for (Quantity& q : set.quantities)
-    if (std::find(keys.begin(), keys.end(), q.key) != keys.end()) q.value *= factor;
-}
+constexpr double least_step = 0.005, largest_step = 0.9;
+// Relative error of a size of the tube or of its mass below which its influence is none.
+constexpr double exact = 1e-5;
+constexpr std::size_t all_sets = std::numeric_limits<std::size_t>::max();  // for VariedNumber::index
 
 // Contacts between tubes, about as many as in a hexagonal rope; each has a registry of its own.
 double contacts_of(int tubes) { return tubes < 2 ? 1 : std::max(1.0, 3 * tubes - std::sqrt(12.0 * tubes - 3)); }
+
+double relative_error(const InputNumber& q) {
+  return q.value != 0 ? q.standard_error.value_or(0) / std::fabs(q.value) : 0;
+}
 
 // Largest relative error of the contact energies: of the closed form, of the relaxed geometry, and of registry,
 // which evens out over the contacts of a rope.
@@ -55,36 +59,143 @@ bool finished(const RunDirectory& dir, const std::string& parameters) {
 
 }  // namespace
 
-std::vector<VariedNumber> varied_numbers(const Scene& scene, int tubes) {
-  std::vector<VariedNumber> all;
-  for (std::size_t k = 0; k < scene.sets.size(); ++k) {
-    const ParameterSet& set = scene.sets[k];
-    const std::string of = scene.sets.size() > 1 ? " of " + set.name : "";
-    const auto add = [&](const std::string& name, double sigma, std::vector<std::string> keys,
-                         const std::string& correlated) {
-      if (!(sigma > 0)) return;
-      const std::string folder = (k > 0 ? fmt::format("type-{}-", k) : "") + name;
-      all.push_back(
-          {{name + of, folder + "-plus", folder + "-minus", sigma, std::max(least_step, sigma), correlated},
-           k,
-           std::move(keys)});
-    };
-    const auto relative = [&](const char* key) {
-      const Quantity* q = find_quantity(set, key);
-      return q && q->value != 0 ? q->standard_error.value_or(0) / std::fabs(q->value) : 0;
-    };
-    add("EA", relative("bond.EA"), {"bond.EA"}, "bond.EA");
-    add("EI", relative("bond.EI"), {"bond.EI"}, "bond.EI");
-    add("GJ", relative("bond.GJ"), {"bond.GJ", "bond.kGA"}, "bond.GJ");
-    if (scene.contact.law == "line")
-      add("contact", contact_error(set, tubes),
-          {"contact.line.K", "contact.line.epsilon", "contact.line.pair_energy", "contact.line.cross90_energy"},
-          "");
+namespace {
+
+class InputsOf {
+ public:
+  InputsOf(const Scene& scene, int tubes) : scene_(scene), tubes_(tubes), numbers_(input_numbers(scene)) {}
+
+  ErrorInputs all() {
+    for (std::size_t k = 0; k < scene_.sets.size(); ++k) add_set(k);
+    if (scene_.sets.size() > 1 && scene_.contact.law == "line") add_unlike_contact();
+    for (const InputNumber& n : numbers_)
+      if (n.of != InputNumber::Of::set) add_typed(n);
+    return std::move(out_);
   }
-  if (all.empty())
+
+ private:
+  using Of = InputNumber::Of;
+
+  void add(const std::string& name, const std::string& folder, double sigma, double step,
+           const std::string& correlated, Of of, std::size_t index, std::vector<std::string> paths,
+           std::string log_path = "") {
+    out_.varied.push_back({{name, folder + "-plus", folder + "-minus", sigma, step, correlated},
+                           of,
+                           index,
+                           std::move(paths),
+                           std::move(log_path)});
+  }
+  static double step_of(double sigma) { return std::min(largest_step, std::max(least_step, sigma)); }
+
+  // The stiffnesses and the contact energy; terms beyond Hooke's law one by one, where they act.
+  void add_set(std::size_t k) {
+    const ParameterSet& set = scene_.sets[k];
+    const std::string of = scene_.sets.size() > 1 ? " of " + set.name : "",
+                      folder = k > 0 ? fmt::format("type-{}-", k) : "";
+    const auto varied = [&](const std::string& name, double sigma, const std::string& correlated,
+                            const std::vector<std::string>& keys) {
+      if (!(sigma > 0)) return;
+      std::vector<std::string> paths;
+      for (const std::string& key : keys)
+        if (find_quantity(set, key)) paths.push_back(key + ".value");
+      add(name + of, folder + name, sigma, step_of(sigma), correlated, Of::set, k, paths);
+    };
+    std::string none;
+    for (const InputNumber& n : numbers_) {
+      if (n.of != Of::set || n.index != k) continue;
+      const auto in = [&](const char* section) { return n.key.rfind(section, 0) == 0; };
+      const double sigma = relative_error(n);
+      const std::string name = n.key.substr(n.key.rfind('.') + 1);
+      if (in("bond.anharmonic.")) {
+        if (scene_.bond.anharmonic) varied(name, sigma, "", {n.key});
+      } else if (in("bond.")) {
+        if (!n.standard_error)
+          none += (none.empty() ? "" : ", ") + name;
+        else if (name == "GJ")
+          varied(name, sigma, n.key, {n.key, "bond.kGA"});
+        else if (name != "kGA")
+          varied(name, sigma, n.key, {n.key});
+      } else if (in("tube.") && sigma >= exact) {
+        varied(name, sigma, "", {n.key});
+      } else if (in("tube.") && sigma > 0) {
+        out_.not_varied.push_back(fmt::format("{}{} (known to {:.1g})", name, of, sigma));
+      }
+    }
+    if (scene_.contact.law == "line") {
+      std::vector<std::string> keys = {"contact.line.K", "contact.line.pair_energy", "contact.line.cross90_energy"};
+      // That of atoms, which all sets of a scene share.
+      if (scene_.sets.size() == 1) keys.push_back("contact.line.epsilon");
+      varied("contact", contact_error(set, tubes_), "", keys);
+    } else if (scene_.contact.law == "paper") {
+      const Quantity* epsilon = find_quantity(set, "contact.paper.epsilon");
+      if (epsilon && !epsilon->standard_error)
+        none += (none.empty() ? "" : ", ") + std::string("contact");
+      else
+        out_.not_varied.push_back("contact.paper" + of + " (errors of single coefficients, none of the law)");
+    }
+    if (!none.empty()) out_.without_error.push_back(fmt::format("{} of {}", none, set.name));
+  }
+
+  // Of pairs of unlike tubes, which have no registry.
+  void add_unlike_contact() {
+    const Quantity* fit = find_quantity(scene_.sets.front(), "contact.line.universal.error");
+    if (!fit || !(fit->value > 0)) return;
+    for (std::size_t k = 0; k < scene_.sets.size(); ++k)
+      if (!scene_.sets[k].line || !scene_.sets[k].line->has_universal) return;
+    add("contact of unlike tubes", "contact-unlike", fit->value, step_of(fit->value), "", Of::set, all_sets, {},
+        "contact.line.universal.log_K.values.0");
+  }
+
+  void add_typed(const InputNumber& n) {
+    const std::vector<std::string> files = input_files(scene_);
+    const bool file = n.of == Of::file;
+    const std::string of = file && files.size() > 1 ? fmt::format(" of file {}", n.index) : "";
+    if (!n.standard_error) {
+      out_.without_error.push_back(fmt::format("{}{} = {:.4g}{}", n.key, of, n.value, n.typed ? "" : " (default)"));
+      return;
+    }
+    if (!(*n.standard_error > 0)) {
+      if (n.value != 0 || !file) out_.not_varied.push_back(fmt::format("{}{} (said to be exact)", n.key, of));
+      return;
+    }
+    std::string folder = (file && files.size() > 1 ? fmt::format("file-{}-", n.index) : "") + n.key;
+    std::replace(folder.begin(), folder.end(), '.', '-');
+    const std::string path = file ? n.key + ".value" : n.key;
+    const double sigma = n.value != 0 ? relative_error(n) : *n.standard_error;
+    add(n.key + of, folder, sigma, n.value != 0 ? step_of(sigma) : sigma, "", n.of, n.index, {path});
+    if (n.value == 0) out_.varied.back().error.minus.clear();  // a strength is not negative
+  }
+
+  const Scene& scene_;
+  int tubes_;
+  std::vector<InputNumber> numbers_;
+  ErrorInputs out_;
+};
+
+// Of the text of a file with its values changed. They are read as they stand there, so that no digit is lost.
+std::string changed_text(std::string text, const VariedNumber& source, bool plus) {
+  const double step = (plus ? 1 : -1) * source.error.step;
+  const auto change = [&](const std::string& path, const auto& changed) {
+    text = with_value(text, path, fmt::format("{:.17g}", changed(number_at(text, path, source.error.name))),
+                      source.error.name);
+  };
+  for (const std::string& path : source.paths)
+    change(path, [&](double value) { return value != 0 ? value * (1 + step) : step; });
+  if (!source.log_path.empty()) change(source.log_path, [&](double value) { return value + std::log1p(step); });
+  return fmt::format("# {} changed by {:+.3g}{}, by `ropewalk errors`.\n", source.error.name,
+                     source.error.minus.empty() ? step : 100 * step, source.error.minus.empty() ? "" : " %") +
+         text;
+}
+
+}  // namespace
+
+ErrorInputs error_inputs(const Scene& scene, int tubes) {
+  ErrorInputs out = InputsOf(scene, tubes).all();
+  if (out.varied.empty())
     throw InputError({scene.path, 0, "parameters"}, "has no number with a standard error",
-                     "take a calibrated set: the published one gives none");
-  return all;
+                     "take a calibrated set, since the published one gives none, or write numbers of the scene as "
+                     "{ value = 0.16, standard_error = 0.02 }");
+  return out;
 }
 
 std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>& sources, const Scene& scene) {
@@ -93,8 +204,8 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
     for (std::size_t j = 0; j < sources.size(); ++j) {
       out[i][j] = i == j ? 1 : 0;
       const VariedNumber &a = sources[i], &b = sources[j];
-      if (i == j || a.set != b.set || a.error.key.empty() || b.error.key.empty()) continue;
-      const auto c = covariance(scene.sets[a.set], {a.error.key, b.error.key});
+      if (i == j || a.index != b.index || a.error.key.empty() || b.error.key.empty()) continue;
+      const auto c = covariance(scene.sets[a.index], {a.error.key, b.error.key});
       out[i][j] = c[0][1] / std::sqrt(c[0][0] * c[1][1]);
     }
   return out;
@@ -103,16 +214,25 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
 int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   const RunDirectory dir{base_.path + "/errors/" + (plus ? source.error.plus : source.error.minus)};
   refuse_strange_files(base_);
-  const std::string text = changed_set(source, plus);
+  const std::string text = changed_file(source, plus);
   if (!again_ && fs::exists(dir.file("changed.toml")) && finished(dir, text)) return 0;
   remove_run(dir, "--again");
   fs::create_directories(base_.path + "/errors");
-  Draft set(dir.path + ".toml");  // for the time of the run
-  set.write(text);
+  const TemporaryFolder folder;
+  const RunDirectory inputs{folder.path()};
+  write_file_atomically(inputs.scene(), source.of == InputNumber::Of::scene ? text : read_file(base_.scene()));
   std::vector<std::string> sets;
-  for (std::size_t k = 0; k < scene_.sets.size(); ++k)
-    sets.push_back(k == source.set ? set.name() : base_.parameters(k));
-  Scene scene = read_scene(base_.scene(), sets);
+  for (std::size_t k = 0; k < scene_.sets.size(); ++k) {
+    const bool changed = source.of == InputNumber::Of::set && (source.index == k || source.index == all_sets);
+    sets.push_back(inputs.parameters(k));
+    write_file_atomically(sets.back(), changed ? changed_text(read_file(base_.parameters(k)), source, plus)
+                                               : read_file(base_.parameters(k)));
+  }
+  const std::vector<std::string> files = input_files(scene_);
+  for (std::size_t k = 0; k < files.size(); ++k)
+    write_file_atomically(inputs.friction(k),
+                          source.of == InputNumber::Of::file && source.index == k ? text : read_file(files[k]));
+  Scene scene = read_scene(inputs.scene(), sets);
   if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state(), base_.state_memory());
   scene.run.time_step = time_step_;
   scene.run.frames_every = 1e9;  // ps: the logs alone are compared
@@ -122,11 +242,20 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   return code;
 }
 
-std::string ErrorRuns::changed_set(const VariedNumber& source, bool plus) const {
-  ParameterSet set = scene_.sets[source.set];
-  multiply(set, source.keys, 1 + (plus ? 1 : -1) * source.error.step);
-  return parameters_text(set, fmt::format("# {} with {} changed by {:+.3g} %, by `ropewalk errors`.\n", set.name,
-                                          source.error.name, (plus ? 100 : -100) * source.error.step));
+std::string ErrorRuns::original(const VariedNumber& source) const {
+  switch (source.of) {
+    case InputNumber::Of::set:
+      return base_.parameters(source.index == all_sets ? 0 : source.index);
+    case InputNumber::Of::file:
+      return input_files(scene_).at(source.index);
+    case InputNumber::Of::scene:
+      break;
+  }
+  return base_.scene();
+}
+
+std::string ErrorRuns::changed_file(const VariedNumber& source, bool plus) const {
+  return changed_text(read_file(original(source)), source, plus);
 }
 
 }  // namespace ropewalk

@@ -1,5 +1,5 @@
-// The runs behind `ropewalk errors`: a run again and again, each time with one number of its parameter sets
-// changed.
+// The runs behind `ropewalk errors`: a run again and again, each time with one number changed that has a standard
+// error, in its parameter sets, in the files of its drives or in the scene itself.
 #pragma once
 
 #include <string>
@@ -7,17 +7,28 @@
 
 #include "io/run_errors.hpp"
 #include "run/run_directory.hpp"
+#include "scene/input_numbers.hpp"
 
 namespace ropewalk {
 
 struct VariedNumber {
   ErrorSource error;
-  std::size_t set = 0;
-  std::vector<std::string> keys;  // of the quantities that change together
+  InputNumber::Of of = InputNumber::Of::set;
+  std::size_t index = 0;  // of the set or the file
+  // Of values in that file. They change together by the relative step of `error`; a single one that is 0, by the
+  // step itself. log_path: of a logarithm that changes with them.
+  std::vector<std::string> paths;
+  std::string log_path = {};
 };
 
-// The numbers of the sets that have a standard error. Throws InputError where there is none. `tubes`: in the scene.
-std::vector<VariedNumber> varied_numbers(const Scene& scene, int tubes);
+// What is behind the errors of a run, and what is not.
+struct ErrorInputs {
+  std::vector<VariedNumber> varied;
+  std::vector<std::string> without_error;  // "failure.strain = 0.16", numbers of which no error is stated
+  std::vector<std::string> not_varied;     // "tube.radius (known to 3e-07)", numbers with an error that is left out
+};
+// Throws InputError where no number has an error. `tubes`: in the scene.
+ErrorInputs error_inputs(const Scene& scene, int tubes);
 std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>& sources, const Scene& scene);
 
 class ErrorRuns {
@@ -30,7 +41,8 @@ class ErrorRuns {
   int run(const VariedNumber& source, bool plus) const;
 
  private:
-  std::string changed_set(const VariedNumber& source, bool plus) const;
+  std::string original(const VariedNumber& source) const;  // the file that has it
+  std::string changed_file(const VariedNumber& source, bool plus) const;
 
   RunDirectory base_;
   const Scene& scene_;

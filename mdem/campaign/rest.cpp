@@ -16,7 +16,25 @@ namespace {
 
 constexpr double below = 0.25, above = 1.5;  // of the winding of the compact state
 constexpr double steepest = 20 * units::degree;
-constexpr double defects = 6;  // of Q, from which on a rope counts as one with defects
+constexpr double defects = 6;       // of Q, from which on a rope counts as one with defects
+constexpr double well_known = 0.1;  // of a twist: an estimate with a larger error is none
+
+const char* const longer = "twist.hold_ps, or run.duration_ps where other drives twist";
+
+RestValue value_of(const Approach& a, const Approach& b) {
+  return {0.5 * (a.limit + b.limit), 0.5 * std::fabs(a.limit - b.limit), std::max(a.drift, b.drift),
+          0.5 * std::hypot(a.statistics, b.statistics)};
+}
+
+// The digits that an error leaves of a value.
+std::string with_error(double value, double error) {
+  const int decimals = error > 0 ? static_cast<int>(std::clamp(1 - std::floor(std::log10(error)), 0.0, 6.0)) : 6;
+  return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, error, decimals);
+}
+
+std::string parts_of(const RestValue& v) {
+  return fmt::format("{:.1g} by the start, {:.1g} by drift, {:.1g} by noise", v.start, v.drift, v.statistics);
+}
 
 }  // namespace
 
@@ -42,10 +60,13 @@ RestSide rest_side(const std::vector<LogRow>& log, double start) {
   RestSide out;
   out.start = start;
   out.time = log.back()["time_ps"];
-  std::vector<double> times, twists;
+  std::vector<double> all_times, all_twists, all_betas, times, twists;
   out.least = std::numeric_limits<double>::infinity();
   out.most = -out.least;
   for (const LogRow& row : log) {
+    all_times.push_back(row["time_ps"]);
+    all_twists.push_back(row["geometric_twist_deg"]);
+    all_betas.push_back(row["beta_deg"]);
     if (row["time_ps"] < 0.8 * out.time) continue;
     times.push_back(row["time_ps"]);
     twists.push_back(row["geometric_twist_deg"]);
@@ -60,83 +81,159 @@ RestSide rest_side(const std::vector<LogRow>& log, double start) {
   out.beta /= rows, out.Q /= rows, out.voids /= rows;
   out.moved = *std::max_element(twists.begin(), twists.end()) - *std::min_element(twists.begin(), twists.end());
   if (const auto line = line_through(times, twists)) out.drift = line->b;
+  out.to_twist = approach_of(all_times, all_twists);
+  out.to_beta = approach_of(all_times, all_betas);
   out.shape = shape_of(log.back(), log.front());
   return out;
 }
 
+const char* name_of(RestVerdict::Kind kind) {
+  switch (kind) {
+    case RestVerdict::Kind::rests:
+      return "rests";
+    case RestVerdict::Kind::creeps:
+      return "creeps";
+    case RestVerdict::Kind::moves:
+      return "moves";
+    case RestVerdict::Kind::apart:
+      return "apart";
+    case RestVerdict::Kind::several:
+      return "several";
+  }
+  return "";
+}
+
+std::string left_out_of_rest() {
+  return "Elements, time step and parameters are not in the errors; `ropewalk errors` of either run carries those "
+         "of "
+         "the parameters.";
+}
+
 RestVerdict rest_verdict(const std::array<RestSide, 2>& s, double tolerance) {
-  RestVerdict out;
+  using Kind = RestVerdict::Kind;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double mean = 0.5 * (s[0].twist + s[1].twist), apart = 0.5 * std::fabs(s[1].twist - s[0].twist);
-  const auto still = [&](const RestSide& side) { return side.moved <= 2 * tolerance * std::fabs(side.twist); };
-  const bool both_still = still(s[0]) && still(s[1]);
-  out.agree = both_still && s[0].branch() == s[1].branch() && apart <= tolerance * std::fabs(mean);
-  out.twist = out.agree ? mean : nan;
-  out.twist_error = out.agree ? apart : nan;
-  out.beta = out.agree ? 0.5 * (s[0].beta + s[1].beta) : nan;
-  out.beta_error = out.agree ? 0.5 * std::fabs(s[1].beta - s[0].beta) : nan;
-  if (out.agree) {
-    out.words = fmt::format(
-        "Rests {}: both sides come to a geometric twist of {:.4g} ± {:.2g} degrees, beta {:.3g} ± {:.1g}.",
-        s[0].branch(), out.twist, out.twist_error, out.beta, out.beta_error);
-    return out;
+  const auto arrived = [&](const RestSide& side) {
+    const Approach& a = side.to_twist;
+    const double near = tolerance * std::fabs(a.limit);
+    return std::fabs(a.to_go) <= near && a.error() <= near && a.swing <= 2 * near;
+  };
+  RestVerdict out;
+  const bool one_branch = s[0].branch() == s[1].branch(), both = arrived(s[0]) && arrived(s[1]);
+  out.twist = value_of(s[0].to_twist, s[1].to_twist);
+  out.beta = value_of(s[0].to_beta, s[1].to_beta);
+  const double size = std::fabs(out.twist.value);
+  const double swing = std::max(s[0].to_twist.swing, s[1].to_twist.swing);
+  if (both)
+    out.kind = !one_branch ? Kind::several : out.twist.start <= tolerance * size ? Kind::rests : Kind::apart;
+  else if (one_branch && out.twist.error() <= well_known * size && swing <= 2 * tolerance * size)
+    out.kind = Kind::creeps;
+  if (out.kind != Kind::rests && out.kind != Kind::creeps) {
+    out.twist = out.beta = {nan, nan, nan, nan};
   }
   const auto motion = [&](const RestSide& side) {
     if (std::fabs(side.drift) * 0.2 * side.time < 0.5 * side.moved)
       return fmt::format("swings by {:.2g}", side.moved);
     return fmt::format("{} by {:.2g}", side.drift * side.twist < 0 ? "fell" : "rose", side.moved);
   };
-  if (!both_still)
-    out.words = fmt::format(
-        "Not at rest: in the last {:.3g} ps the rope that began below {} degrees, to {:.4g} in the mean, and the "
-        "one that began above {}, to {:.4g}. Make the hold longer: twist.hold_ps, or run.duration_ps where other "
-        "drives twist.",
-        0.2 * s[0].time, motion(s[0]), s[0].twist, motion(s[1]), s[1].twist);
-  else if (s[0].branch() == s[1].branch())
-    out.words = fmt::format(
-        "Both sides stand still {}, at {:.4g} degrees from below and {:.4g} from above: a slow motion, or a band "
-        "of friction. Make the hold longer (twist.hold_ps, or run.duration_ps where other drives twist), or the "
-        "viscosity lower.",
-        s[0].branch(), s[0].twist, s[1].twist);
-  else
-    out.words = fmt::format(
-        "More than one state of rest: {} at {:.4g} degrees from below, {} at {:.4g} from above. The way of loading "
-        "chooses between them.",
-        s[0].branch(), s[0].twist, s[1].branch(), s[1].twist);
+  const std::string of_both = fmt::format(
+      "in the last {:.3g} ps the rope that began below {} degrees, to {:.4g} in the mean, and the one that "
+      "began above {}, to {:.4g}.",
+      0.2 * s[0].time, motion(s[0]), s[0].twist, motion(s[1]), s[1].twist);
+  switch (out.kind) {
+    case Kind::rests:
+      out.words = fmt::format("Rests {}: both sides come to a geometric twist of {} degrees ({}), beta {}.",
+                              s[0].branch(), with_error(out.twist.value, out.twist.error()), parts_of(out.twist),
+                              with_error(out.beta.value, out.beta.error()));
+      break;
+    case Kind::creeps: {
+      double part = 1;
+      for (const RestSide& side : s) {
+        part = std::min(part, 0.5 * tolerance * size / std::fabs(side.to_twist.to_go));
+        out.further_time = std::max(out.further_time, side.to_twist.wait(part));
+      }
+      out.words =
+          fmt::format("Creeps {}: {} Continued, both come to a geometric twist of {} degrees ({}).", s[0].branch(),
+                      of_both, with_error(out.twist.value, out.twist.error()), parts_of(out.twist));
+      if (out.further_time > 0)
+        out.words += fmt::format(
+            " To rest there, hold for {:.2g} ps more ({}), or divide the viscosity by {:.2g} (--viscosity).",
+            out.further_time, longer, (s[0].time + out.further_time) / s[0].time);
+      else
+        out.words += fmt::format(" To know it better, make the hold longer: {}.", longer);
+      break;
+    }
+    case Kind::moves:
+      out.words = fmt::format("Not at rest: {} Make the hold longer: {}{}.", of_both, longer,
+                              std::isfinite(s[0].to_twist.error() + s[1].to_twist.error())
+                                  ? ""
+                                  : fmt::format(", with {} rows of the log or more in each quarter of it "
+                                                "(run.log_every_ps)",
+                                                least_rows_of_approach));
+      break;
+    case Kind::apart:
+      out.words = fmt::format(
+          "Both sides stand still {}, at {:.4g} degrees from below and {:.4g} from above: a slow motion, or a band "
+          "of friction. Make the hold longer ({}), or the viscosity lower.",
+          s[0].branch(), s[0].to_twist.limit, s[1].to_twist.limit, longer);
+      break;
+    case Kind::several:
+      out.words = fmt::format(
+          "More than one state of rest: {} at {:.4g} degrees from below, {} at {:.4g} from above. The way of "
+          "loading "
+          "chooses between them.",
+          s[0].branch(), s[0].to_twist.limit, s[1].branch(), s[1].to_twist.limit);
+      break;
+  }
   return out;
 }
 
 std::string rest_csv(const std::array<RestSide, 2>& sides) {
   std::string text =
       "from,start_deg_per_nm,time_ps,geometric_twist_deg,drift_deg_per_ps,beta_deg,least_beta_deg,most_beta_deg,Q,"
-      "void_area_nm2,branch\n";
+      "void_area_nm2,branch,limit_deg,limit_drift_deg,limit_statistics_deg,approach_ps\n";
   for (const RestSide& s : sides)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", &s == &sides[0] ? "below" : "above", s.start, s.time,
-                        s.twist, s.drift, s.beta, s.least, s.most, s.Q, s.voids, s.branch());
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", &s == &sides[0] ? "below" : "above",
+                        s.start, s.time, s.twist, s.drift, s.beta, s.least, s.most, s.Q, s.voids, s.branch(),
+                        s.to_twist.limit, s.to_twist.drift, s.to_twist.statistics, s.to_twist.time);
   return text;
 }
 
 std::string rest_json(const std::array<RestSide, 2>& sides, const RestVerdict& v, const RestTheory& theory,
                       double length) {
-  const auto number = [](double x) {
-    return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
+  using Json = nlohmann::ordered_json;
+  const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto if_rests = [&](double x) { return number(v.agree() ? x : nan); };
+  const auto value = [&](const RestValue& r) {
+    return Json{{"value_deg", number(r.value)},
+                {"error_deg", number(r.error())},
+                {"by_start_deg", number(r.start)},
+                {"by_drift_deg", number(r.drift)},
+                {"by_noise_deg", number(r.statistics)}};
   };
-  nlohmann::ordered_json out = {{"agree", v.agree},
-                                {"words", v.words},
-                                {"geometric_twist_deg", number(v.twist)},
-                                {"geometric_twist_error_deg", number(v.twist_error)},
-                                {"beta_deg", number(v.beta)},
-                                {"beta_error_deg", number(v.beta_error)},
-                                {"theory",
-                                 {{"compact_deg", theory.compact * length / units::degree},
-                                  {"open_deg", theory.open * length / units::degree}}},
-                                {"sides", nlohmann::ordered_json::array()}};
+  Json out = {{"agree", v.agree()},
+              {"verdict", name_of(v.kind)},
+              {"words", v.words},
+              {"geometric_twist_deg", if_rests(v.twist.value)},
+              {"geometric_twist_error_deg", if_rests(v.twist.error())},
+              {"beta_deg", if_rests(v.beta.value)},
+              {"beta_error_deg", if_rests(v.beta.error())},
+              {"estimate", {{"geometric_twist", value(v.twist)}, {"beta", value(v.beta)}}},
+              {"further_time_ps", number(v.further_time)},
+              {"not_in_the_errors", left_out_of_rest()},
+              {"theory",
+               {{"compact_deg", theory.compact * length / units::degree},
+                {"open_deg", theory.open * length / units::degree}}},
+              {"sides", Json::array()}};
   for (const RestSide& s : sides)
     out["sides"].push_back({{"from", &s == &sides[0] ? "below" : "above"},
                             {"start_deg_per_nm", s.start},
                             {"time_ps", s.time},
                             {"geometric_twist_deg", number(s.twist)},
                             {"drift_deg_per_ps", number(s.drift)},
+                            {"limit_deg", number(s.to_twist.limit)},
+                            {"limit_error_deg", number(s.to_twist.error())},
+                            {"approach_ps", number(s.to_twist.time)},
                             {"beta_deg", number(s.beta)},
                             {"Q", number(s.Q)},
                             {"branch", s.branch()}});

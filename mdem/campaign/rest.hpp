@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "campaign/campaign.hpp"
+#include "observe/approach.hpp"
 #include "plan/rest_theory.hpp"
 
 namespace ropewalk {
@@ -16,7 +18,7 @@ namespace ropewalk {
 // contact viscosity of both: any value leads to a state of rest, and a lower one sooner until the rope swings.
 std::string rest_sweep(const Scene& scene, const Prepared& prepared, const RestTheory& theory, double viscosity);
 
-// Means over the last fifth of a run.
+// The end of one run. Means are over its last fifth.
 struct RestSide {
   double start = 0;                      // deg/nm
   double twist = 0, drift = 0;           // geometric_twist_deg, and its slope (deg/ps)
@@ -24,20 +26,37 @@ struct RestSide {
   double beta = 0, least = 0, most = 0;  // beta_deg: mean, and where it swings
   double Q = 0, voids = 0;               // voids: nm^2
   double time = 0;                       // ps, at the end
+  Approach to_twist, to_beta;            // deg: where both are going
   RopeShape shape = RopeShape::straight;
   std::string branch() const;  // "compact", "compact with defects", "open (cage)"
 };
 RestSide rest_side(const std::vector<LogRow>& log, double start);
 
+// A value with its error, whose square is the sum of those of its parts.
+struct RestValue {
+  double value = 0;
+  double start = 0;  // half of the difference of both sides
+  double drift = 0;  // of what they still creep (observe/approach.hpp): of both alike, since they creep together
+  double statistics = 0;  // of their noise
+  double error() const { return std::hypot(start, drift, statistics); }
+};
+
 struct RestVerdict {
-  // Both stand still within twice `tolerance` of the twist, on the same branch, and within `tolerance` of their
-  // mean.
-  bool agree = false;
-  std::string words;  // one or two sentences
-  double twist = 0, twist_error = 0, beta = 0,
-         beta_error = 0;  // deg; half of the difference; nan: they do not agree
+  // rests: both sides are within `tolerance` of the twist that they go to, know it that well and agree within it,
+  // on one branch. creeps: they agree on where they go to within its error, which is below a tenth of it, but are
+  // not there. apart: they stand still at two values. several: they stand still on two branches.
+  enum class Kind { rests, creeps, moves, apart, several };
+  Kind kind = Kind::moves;
+  bool agree() const { return kind == Kind::rests; }
+  std::string words;        // one or two sentences
+  RestValue twist, beta;    // deg; nan: neither `rests` nor `creeps`
+  double further_time = 0;  // ps, by which `creeps` would rest
 };
 RestVerdict rest_verdict(const std::array<RestSide, 2>& sides, double tolerance);
+const char* name_of(RestVerdict::Kind kind);
+
+// What the errors of a verdict leave out, in words.
+std::string left_out_of_rest();
 
 // A row for each side, and what the verdict says.
 std::string rest_csv(const std::array<RestSide, 2>& sides);

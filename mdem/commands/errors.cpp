@@ -1,5 +1,6 @@
-// `errors`: how the standard errors of the parameter sets carry through a run.
+// `errors`: how the standard errors of a scene's inputs carry through a run.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <omp.h>
 #include <sys/wait.h>
 
@@ -31,7 +32,7 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
   fmt::print(
       "Errors of the parameters alone: nothing of time step, elements, rate of loading or noise is in them.\n"
       "{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
-      "at the end", "value", "± fit", "± potential", "moves by", "the fit's from");
+      "at the end", "value", "± inputs", "± potential", "moves by", "the inputs' from");
   std::string none;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -59,6 +60,17 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
   if (!none.empty()) fmt::print("No influence beyond rounding on {}.\n", none);
 }
 
+std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+void print_left_out(const ErrorInputs& inputs) {
+  if (!inputs.without_error.empty())
+    fmt::print(
+        "No error is stated of, and none carried from: {}.\nIn a scene's own tables it is stated as in {{ value = "
+        "0.16, standard_error = 0.02 }}.\n",
+        joined(inputs.without_error));
+  if (!inputs.not_varied.empty()) fmt::print("Not varied: {}.\n", joined(inputs.not_varied));
+}
+
 }  // namespace
 
 int errors_command(const ErrorsArguments& a) {
@@ -71,22 +83,25 @@ int errors_command(const ErrorsArguments& a) {
                      "end it with `ropewalk resume`, or run the scene anew");
   const std::vector<LogRow> log = read_log(dir.log());
   if (log.empty()) throw InputError({dir.log(), 0, ""}, "has no rows", "run the scene anew");
-  const std::vector<VariedNumber> sources = varied_numbers(scene, prepared.topology.tubes());
+  const ErrorInputs inputs = error_inputs(scene, prepared.topology.tubes());
+  const std::vector<VariedNumber>& sources = inputs.varied;
   const ErrorRuns runs(dir, scene, prepared.time_step, a.again);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   std::vector<ProcessTask> tasks;
   std::vector<std::string> failed;
-  std::size_t number = 0;
+  std::size_t number = 0, count = 0;
+  for (const VariedNumber& source : sources) count += source.error.minus.empty() ? 1 : 2;
   if (!a.quiet)
-    tell_as_is(fmt::format(
-        "{} runs like this one, about {:.2g} min on {} cores\n", 2 * sources.size(),
-        2 * static_cast<double>(sources.size()) * manifest.wall_seconds * manifest.threads / jobs / 60, jobs));
+    tell_as_is(fmt::format("{} runs like this one, about {:.2g} min on {} cores\n", count,
+                           static_cast<double>(count) * manifest.wall_seconds * manifest.threads / jobs / 60,
+                           jobs));
   for (const VariedNumber& source : sources)
     for (const bool plus : {true, false}) {
-      ++number;
       const std::string name = plus ? source.error.plus : source.error.minus;
+      if (name.empty()) continue;
+      ++number;
       tasks.push_back({[&, plus, number, name] {
-                         if (!a.quiet) tell_as_is(fmt::format("{}/{} {}\n", number, 2 * sources.size(), name));
+                         if (!a.quiet) tell_as_is(fmt::format("{}/{} {}\n", number, count, name));
                          try {
                            if (!std::freopen("/dev/null", "w", stdout)) return 3;
                            return runs.run(source, plus);
@@ -108,14 +123,16 @@ int errors_command(const ErrorsArguments& a) {
   std::vector<ErrorSource> described;
   for (const VariedNumber& s : sources) described.push_back(s.error);
   const RunErrors errors(dir.path + "/errors", described, correlation_of(sources, scene), log);
-  write_file_atomically(dir.path + "/errors/errors.json", run_errors_json(errors, log));
+  const std::string json = run_errors_json(errors, log, inputs.without_error, inputs.not_varied);
+  write_file_atomically(dir.path + "/errors/errors.json", json);
   write_file_atomically(dir.file("errors.csv"), run_errors_csv(errors, log, &ResultError::error));
   write_file_atomically(dir.file("errors-potential.csv"), run_errors_csv(errors, log, &ResultError::potential));
   write_report(dir, scene, prepared);
   if (a.json) {
-    fmt::print("{}", run_errors_json(errors, log));
+    fmt::print("{}", json);
   } else {
     print_table(errors, log);
+    print_left_out(inputs);
     fmt::print("Errors of every row: {} and {}; bands in {}\n", dir.file("errors.csv"),
                dir.file("errors-potential.csv"), dir.report());
   }

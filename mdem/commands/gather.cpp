@@ -15,7 +15,10 @@ int gather_command(const GatherArguments& a) {
   options.mean_ps = a.mean_ps;
   options.series = a.series;
   options.columns = a.columns;
+  std::vector<std::string> short_of;
+  options.short_of = &short_of;
   const std::string table = gathered_csv(dir, sweep, points_of(sweep, PointsAs::names), options);
+  for (const std::string& words : short_of) tell(words);
   if (a.out.empty()) {
     fmt::print("{}", table);
     return 0;

@@ -13,6 +13,7 @@
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/scene_toml.hpp"
 
 namespace ropewalk {
 namespace {
@@ -29,12 +30,13 @@ double viscosity_of(const RestArguments& a, const Scene& scene) {
 }
 
 void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory, double length) {
-  fmt::print("{:<8} {:>10} {:>14} {:>16} {:>22} {:>6}  {}\n", "from", "time, ps", "twist, deg", "in 100 ps, deg",
-             "beta, deg (range)", "Q", "branch");
+  fmt::print("{:<8} {:>10} {:>12} {:>15} {:>18} {:>22} {:>6}  {}\n", "from", "time, ps", "twist, deg",
+             "in 100 ps, deg", "goes to, deg", "beta, deg (range)", "Q", "branch");
   for (const RestSide& s : sides)
-    fmt::print("{:<8} {:>10.4g} {:>14.4g} {:>16.2g} {:>22} {:>6.3g}  {}\n", &s == &sides[0] ? "below" : "above",
-               s.time, s.twist, 100 * s.drift, fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most),
-               s.Q, s.branch());
+    fmt::print("{:<8} {:>10.4g} {:>12.4g} {:>15.2g} {:>19} {:>22} {:>6.3g}  {}\n",
+               &s == &sides[0] ? "below" : "above", s.time, s.twist, 100 * s.drift,
+               fmt::format("{:.4g} ± {:.1g}", s.to_twist.limit, s.to_twist.error()),
+               fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most), s.Q, s.branch());
   fmt::print(
       "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
       theory.compact * length / units::degree, theory.open * length / units::degree);
@@ -80,7 +82,9 @@ int rest_command(const RestArguments& a) {
     return 0;
   }
   print_sides(sides, theory, length);
-  fmt::print("{}\nNumbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words, dir.path, dir.path);
+  const bool quoted = std::isfinite(verdict.twist.value);
+  fmt::print("{}\n{}Numbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words,
+             quoted ? left_out_of_rest() + "\n" : "", dir.path, dir.path);
   return 0;
 }
 

@@ -20,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "ropewalk-errors-1";
 constexpr double rounding = 1e-9;  // of the value, and of 1 in its unit
+constexpr double noise = 1e-6;     // likewise, of a value that is not linear in the parameters
 constexpr double unlike = 1e-3;    // of the value: a smaller effect is of no interest, linear or not
 
 LogRow nothing() {
@@ -52,14 +53,15 @@ RunErrors::RunErrors(const std::string& directory, std::vector<ErrorSource> sour
     : sources_(std::move(sources)), correlation_(std::move(correlation)), log_(log) {
   for (const ErrorSource& s : sources_)
     runs_.emplace_back(aligned(read_log(directory + "/" + s.plus + "/log.csv"), log),
-                       aligned(read_log(directory + "/" + s.minus + "/log.csv"), log));
+                       s.minus.empty() ? log : aligned(read_log(directory + "/" + s.minus + "/log.csv"), log));
 }
 
 ResultError RunErrors::of(std::size_t k, const Value& value) const {
   ResultError out;
   const double middle = value(log_.at(k));
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double plus = value(runs_[i].first[k]), minus = value(runs_[i].second[k]);
+    const double plus = value(runs_[i].first[k]),
+                 minus = sources_[i].minus.empty() ? 2 * middle - plus : value(runs_[i].second[k]);
     const double scale = 0.5 * sources_[i].sigma / sources_[i].step;
     double part = scale * (plus - minus);
     const double bent = scale * std::fabs(plus + minus - 2 * middle);
@@ -105,7 +107,9 @@ bool has_influence(const ResultError& error, const std::vector<LogRow>& log, con
   double largest = 1;
   for (const LogRow& row : log)
     if (const double v = value(row); std::isfinite(v)) largest = std::max(largest, std::fabs(v));
-  return std::isfinite(error.error) && error.error > rounding * largest;
+  if (!std::isfinite(error.error) || !(error.error > rounding * largest)) return false;
+  // What is zero by symmetry follows no parameter: it is noise, and moves by as much.
+  return error.linear || (error.error > noise * largest && error.error > movement(log, value));
 }
 
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {
@@ -134,7 +138,9 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
   return {directory, std::move(sources), std::move(correlation), log};
 }
 
-std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log) {
+std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log,
+                            const std::vector<std::string>& without_error,
+                            const std::vector<std::string>& not_varied) {
   Json sources = Json::array(), results = Json::object();
   for (const ErrorSource& s : errors.sources())
     sources.push_back({{"name", s.name},
@@ -156,10 +162,8 @@ std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& 
                      {"linear", e.linear},
                      {"parts", parts}};
   }
-  return Json{{"format", format_name},
-              {"sources", sources},
-              {"correlation", errors.correlation()},
-              {"at_the_end", results}}
+  return Json{{"format", format_name},          {"sources", sources},       {"correlation", errors.correlation()},
+              {"without_error", without_error}, {"not_varied", not_varied}, {"at_the_end", results}}
              .dump(1) +
          "\n";
 }

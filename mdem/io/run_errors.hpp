@@ -1,4 +1,4 @@
-// Standard errors of the results of a run that follow from those of its parameter sets.
+// Standard errors of the results of a run that follow from those of its inputs (scene/input_numbers.hpp).
 //
 // Each source is a parameter p, known to a relative standard error sigma. The run was repeated with p (1 +- h). To
 // first order a result f then has the error
@@ -7,6 +7,8 @@
 //
 // with rho the correlations of the sources. Where the two runs do not lie on either side of the first, f is not
 // linear in p; half of their distance from it is then added to g_i, and the result is marked.
+//
+// A parameter that is 0 and cannot be lower is only raised, by an absolute step: g = sigma (f(h) - f(0))/h.
 //
 // A second error follows from how far potentials lie apart (potential_spread.hpp), with C in the place of sigma rho
 // sigma. Both are of the parameters alone: time step, elements, rate of loading and noise are not in them.
@@ -23,8 +25,8 @@ namespace ropewalk {
 
 struct ErrorSource {
   std::string name;         // "GJ", or "GJ of cnt-5-5-tersoff" where there are several sets
-  std::string plus, minus;  // directories of the runs, within that of the errors
-  double sigma = 0;         // relative standard error
+  std::string plus, minus;  // directories of the runs, within that of the errors; no `minus`: it is only raised
+  double sigma = 0;         // relative standard error; absolute where the value is 0
   double step = 0;          // h
   std::string key;          // of the quantity, "bond.GJ"; empty: independent of all others
 };
@@ -64,13 +66,16 @@ class RunErrors {
 double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
 
 // Whether the parameters act on a value at all: its error is more than rounding beside the largest value in the
-// log.
+// log, and more than noise where it is not linear in them.
 bool has_influence(const ResultError& error, const std::vector<LogRow>& log, const RunErrors::Value& value);
 
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
 // Writes the file that read_run_errors reads, with the errors of all observables at the end.
-std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log);
+// `without_error`, `not_varied`: numbers that are not among the sources, in words.
+std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log,
+                            const std::vector<std::string>& without_error,
+                            const std::vector<std::string>& not_varied);
 // As log.csv, with an error in the place of each value but those of step and time: `error` or `potential`.
 std::string run_errors_csv(const RunErrors& errors, const std::vector<LogRow>& log, double ResultError::*which);
 

@@ -129,6 +129,7 @@ struct TomlTable::Node {
   std::string file;
   std::string path;
   bool listed = false;                      // one of several, [[path]]
+  bool has_errors = false;                  // its numbers may have a standard error
   std::shared_ptr<const toml::table> root;  // keeps `table` alive
   const toml::table* table = nullptr;       // none: the table is missing
   std::vector<std::string> keys;
@@ -207,6 +208,11 @@ bool TomlTable::is_array(const std::string& key) const {
   return n && n->is_array();
 }
 
+bool TomlTable::is_table(const std::string& key) const {
+  const toml::node* n = node_->find(key);
+  return n && n->is_table();
+}
+
 const std::vector<std::string>& TomlTable::keys() const { return node_->keys; }
 const std::string& TomlTable::path() const { return node_->path; }
 
@@ -264,7 +270,15 @@ const toml::array& checked_array(const TomlTable& t, const std::string& key, con
 
 }  // namespace
 
+void TomlTable::allow_standard_errors() const { node_->has_errors = true; }
+
+std::optional<double> TomlTable::standard_error(const std::string& key) const {
+  if (!node_->has_errors || !is_table(key)) return std::nullopt;
+  return table(key).number("standard_error", Bounds::non_negative());
+}
+
 double TomlTable::number(const std::string& key, const Bounds& bounds) const {
+  if (standard_error(key)) return table(key).number("value", bounds);
   const toml::node& n = node_->required(*this, key);
   return checked_number(*this, key, n, bounds);
 }

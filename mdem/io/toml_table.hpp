@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,13 @@ class TomlTable {
   bool has(const std::string& key) const;
   bool is_string(const std::string& key) const;  // false where the key is missing
   bool is_array(const std::string& key) const;
+  bool is_table(const std::string& key) const;
   const std::vector<std::string>& keys() const;  // sorted
+
+  // From now on number() also reads { value = 1, standard_error = 0.1 }.
+  void allow_standard_errors() const;
+  // That of a number so written, in the unit of the key; none: the key has a plain number, or is missing.
+  std::optional<double> standard_error(const std::string& key) const;
 
   // Required keys.
   double number(const std::string& key, const Bounds& bounds) const;

@@ -13,10 +13,9 @@ struct SceneFeatures {
   bool sudden = false;              // a force or a moment acts at once
   double strain = 0;                // of a tube, the largest expected
   double pressure = 0;              // eV/nm^3, on the innermost tube
-  double turn = 0;                  // rad/nm, twist of the rope as a whole at mechanical equilibrium
+  double turn = 0;                  // rad/nm, by which loads and motions turn the rope as a whole from its start
   Schedule course;                  // of the load or motion that takes longest to become whole
   double turned = 0, turning = 0;   // rad and rad/ps, prescribed to an end against the other
-  double tension = 0;               // eV/nm, prescribed to a tube
   // Whether both ends of some tube have a prescribed rotation, or a prescribed distance.
   bool turned_between = false, length_held = false;
   bool prescribes_moment = false;  // about the axis, at an end
@@ -24,8 +23,8 @@ struct SceneFeatures {
   double ramp() const { return course.reaches(); }  // ps
 };
 
-// Upper estimates: a twisting moment twists each tube as if no other held it, M/GJ; a force bends a tube that is
-// clamped at its far end, F L/EI.
+// Upper estimates, see plan/demands.hpp: a twisting moment twists each tube as if no other held it; a force bends a
+// tube that is clamped at its far end, with the moment F L.
 SceneFeatures features_of(const Scene& scene, const Prepared& prepared);
 
 }  // namespace ropewalk

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "plan/demands.hpp"
 #include "plan/features.hpp"
 #include "plan/sliding_rope.hpp"
 #include "scene/watch.hpp"
@@ -13,7 +15,7 @@ namespace ropewalk {
 namespace {
 
 // The value that a scene brings a limit to; 0: not estimated.
-double expected(const SceneFeatures& f, const TubeType& type, double Limits::*limit) {
+double expected(const Demands& f, const TubeType& type, double Limits::*limit) {
   if (limit == &Limits::wall_twist) return type.radius * f.twist;
   if (limit == &Limits::twist) return type.element_length * f.twist;
   if (limit == &Limits::kink_curvature) return f.curvature;
@@ -75,22 +77,69 @@ double expected_shock(const Scene& scene, const Prepared& p) {
   return kinetic / twist;
 }
 
+namespace {
+
+constexpr double at_once = 1e-3;  // ps
+
+// What a scene does to one limit.
+struct Ahead {
+  double start = 0, largest = 0;
+  double passes = 0;  // ps, from when on it is beyond
+};
+
+Ahead ahead_of(const DemandsAhead& demands, const TubeType& type, double Limits::*kind, double limit) {
+  const auto value = [&](double time) { return expected(demands.at(time), type, kind); };
+  Ahead out{value(0), 0, 0};
+  double before = 0;
+  for (const double time : demands.times()) {
+    const double now = value(time);
+    if (now > limit && !(out.largest > limit)) {
+      double low = before, high = time;
+      for (int k = 0; k < 30 && high > low; ++k) {
+        const double middle = 0.5 * (low + high);
+        (value(middle) > limit ? high : low) = middle;
+      }
+      out.passes = high;
+    }
+    out.largest = std::max(out.largest, now);
+    before = time;
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
-  const SceneFeatures f = features_of(scene, p);
+  const DemandsAhead demands(scene, p);
   const Limits limits = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits.front();
   for (const LimitKind& kind : limit_kinds()) {
-    const bool shock = kind.limit == &Limits::shock;
-    const double limit = limits.*kind.limit,
-                 value = shock ? expected_shock(scene, p) : expected(f, p.topology.types[0], kind.limit);
-    if (limit <= 0 || value <= limit) continue;
+    const double limit = limits.*kind.limit;
+    if (limit <= 0) continue;
     const std::string unit = *kind.unit ? " " + std::string(kind.unit) : "";
-    const std::string when = f.ramp() > 0 && !shock
-                                 ? fmt::format(", from about {:.3g} ps on", f.course.reaches(limit / value))
-                                 : std::string();
-    out.push_back(fmt::format("The load may bring {} to {:.3g}{}{}, beyond its limit of {:.3g}: {}; {}.", kind.key,
-                              value / kind.unit_size, unit, when, limit / kind.unit_size, kind.consequence,
-                              shock ? gentle_ramp(p, limit / value) : kind.remedy));
+    const auto number = [&](double value) { return fmt::format("{:.3g}{}", value / kind.unit_size, unit); };
+    const std::string beyond =
+        fmt::format("beyond its limit of {:.3g}: {}", limit / kind.unit_size, kind.consequence);
+    if (kind.limit == &Limits::shock) {
+      if (const double shock = expected_shock(scene, p); shock > limit)
+        out.push_back(fmt::format("The load may bring {} to {}, {}; {}.", kind.key, number(shock), beyond,
+                                  gentle_ramp(p, limit / shock)));
+      continue;
+    }
+    const Ahead ahead = ahead_of(demands, p.topology.types[0], kind.limit, limit);
+    if (!(ahead.largest > limit)) continue;
+    constexpr double more = 1.02;
+    if (ahead.start > limit)
+      out.push_back(fmt::format("The scene begins with {} at {}{}, {}; {}.", kind.key, number(ahead.start),
+                                ahead.largest > more * ahead.start
+                                    ? fmt::format(", and the load may bring it to {}", number(ahead.largest))
+                                    : std::string(),
+                                beyond, kind.remedy));
+    else
+      out.push_back(fmt::format(
+          "The load may bring {} to {}{}, {}; {}.", kind.key, number(ahead.largest),
+          ahead.passes > at_once ? fmt::format(", from about {:.3g} ps on", ahead.passes) : std::string(), beyond,
+          kind.remedy));
   }
   return out;
 }

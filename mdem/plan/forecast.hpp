@@ -10,8 +10,8 @@
 
 namespace ropewalk {
 
-// A sentence for each, by the upper estimates of features_of(); where the load grows, with the time when it gets
-// there.
+// A sentence for each, by the upper estimates of plan/demands.hpp: what the scene begins with, and what the load
+// brings it to, with the time when it gets there.
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
 
 // Where a moment on each tube makes a helix of the straight rope, by plan/sliding_rope.hpp. None: it does not, or

@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "model/error.hpp"
@@ -191,6 +192,17 @@ std::string with_value(const std::string& text, const std::string& path, const s
     set_line(lines, range_from(lines, depth == 0 ? 0 : at.begin.line), "", key, key + " = " + value);
   }
   return text_of(lines);
+}
+
+double number_at(const std::string& text, const std::string& path, const std::string& file) {
+  const toml::table top = toml::parse(text, file);
+  const std::vector<std::string> parts = parts_of(path);
+  const toml::node* node = &top;
+  for (std::size_t depth = 0; depth < parts.size() && node; ++depth) node = child(*node, parts, depth, path, file);
+  if (const toml::table* table = node ? node->as_table() : nullptr) node = table->get("value");
+  const std::optional<double> value = node ? node->value<double>() : std::nullopt;
+  if (!value) throw InputError({file, 0, path}, "is not a number there", "write one");
+  return *value;
 }
 
 std::string without_key(const std::string& text, const std::string& table, const std::string& key) {

@@ -17,6 +17,10 @@ std::string with_key(const std::string& text, const std::string& table, const st
 std::string with_value(const std::string& text, const std::string& path, const std::string& value,
                        const std::string& file);
 
+// The number at such a path, or in { value = 1, standard_error = 0.1 } there. Throws InputError where there is
+// none.
+double number_at(const std::string& text, const std::string& path, const std::string& file);
+
 // Makes the line that sets a key a comment; the text itself where there is none.
 std::string without_key(const std::string& text, const std::string& table, const std::string& key);
 

@@ -448,7 +448,7 @@ std::string carried_errors(const ReportInput& in) {
   for (const ErrorSource& source : in.errors.sources())
     names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
   std::string html = paragraph(
-      "Two standard errors that follow from the parameters alone: ± that of their fits, " + escape_markup(names) +
+      "Two standard errors that follow from the parameters alone: ± that of the inputs, " + escape_markup(names) +
       ", and ± that of the interatomic potential, by how far four potentials of carbon lie apart. The bands "
       "of the charts are both together. The run was repeated with each parameter changed; errors.csv and "
       "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time "

@@ -35,6 +35,8 @@ class Drive {
 
   // Files that it was read from. A run keeps copies of them, under their names, and reads these again.
   virtual std::vector<std::string> files() const { return {}; }
+  // Whether the motion depends on the number of this key in them, "friction.strength".
+  virtual bool depends_on(const std::string& /*key*/) const { return true; }
 
   // Throws InputError if the rest of the scene, which has been read, contradicts it.
   virtual void refuse(const TomlTable& /*top*/, const Scene&) const {}

@@ -22,6 +22,10 @@ struct DriveKind {
   const char* energy = nullptr;
   // More columns, of what these terms have done.
   std::vector<TermColumn> account = {};
+
+  // A drive with force terms describes how tubes interact: the numbers of its table are properties, which may have
+  // a standard error (input_numbers.hpp). Other drives say what is done to them.
+  bool has_properties() const { return energy != nullptr; }
 };
 
 // The number of an element of a tube in the scene; a negative one counts from the end of the tube. Throws

@@ -72,6 +72,7 @@ struct KeyOf {
   static KeyOf number(const std::string& key, Unit u, BoundsInScene bounds, M member, const Presence& p,
                       const std::string& meaning) {
     KeyOf k = made(key, u.name, p, meaning);
+    k.doc.number = true;
     k.read = [=, needed = k.doc.required()](const TomlTable& t, const Scene& scene, T& out) {
       if (needed || t.has(key)) std::invoke(member, out) = t.number(key, bounds(scene)) * u.size;
     };

@@ -17,7 +17,8 @@ struct SceneKey {
   // For scenes with elements of another length: the value goes as this power of it, up to `most`.
   int length_power = 0;
   double most = std::numeric_limits<double>::infinity();
-  bool whole = false;  // an integer, rounded up
+  bool whole = false;   // an integer, rounded up
+  bool number = false;  // a single number with any digits
   // "all", "ends" or a list of elements. A key of the same table that goes as the length of an element is what each
   // of them takes of a whole, which matters for "all" alone: the others stay where they are.
   bool numbers_elements = false;
@@ -34,6 +35,9 @@ struct SceneTable {
   std::string meaning;
   std::vector<SceneKey> keys;
   bool listed = false;  // [[name]], any number of them
+  // Its numbers are properties of the tubes, measured or assumed, that may have a standard error
+  // (input_numbers.hpp). In other tables they are what the user asks for.
+  bool has_properties = false;
 
   std::string header() const { return listed ? "[[" + name + "]]" : "[" + name + "]"; }
   // Whether the whole table may be left out.

@@ -22,7 +22,11 @@ std::vector<SceneTable> scene_tables() {
   for (const SceneTable& table :
        {start_table().doc(), bond_table().doc(), contact_table().doc(), damping_table().doc()})
     tables.push_back(table);
-  for (const DriveKind& kind : drive_kinds()) tables.push_back(kind.table());
+  tables.back().has_properties = true;  // [damping]
+  for (const DriveKind& kind : drive_kinds()) {
+    tables.push_back(kind.table());
+    tables.back().has_properties = kind.has_properties();
+  }
   for (const SceneTable& table :
        {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc(), expect_table().doc()})
     tables.push_back(table);

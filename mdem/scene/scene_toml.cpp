@@ -61,6 +61,11 @@ std::string belongs_to(const std::string& key) {
   return "";
 }
 
+TomlTable with_errors(TomlTable table) {
+  table.allow_standard_errors();
+  return table;
+}
+
 // In an order in which each finds what it needs in the scene.
 void read_tables(const TomlTable& top, Scene& scene) {
   read_source(top, scene);
@@ -68,13 +73,20 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.bond = bond_table().read(top.table("bond"), scene);
   scene.contact = contact_table().read(top.table("contact"), scene);
   check_contact_law(top, scene);
-  scene.damping = damping_table().read(top.table("damping"), scene);
+  scene.damping = damping_table().read(with_errors(top.table("damping")), scene);
   for (const DriveKind& kind : drive_kinds()) {
     const SceneTable table = kind.table();
+    std::vector<TomlTable> tables;
     if (table.listed)
-      read_listed_drives(kind, top.tables(table.name), scene);
+      tables = top.tables(table.name);
     else if (top.has(table.name))
-      scene.drives.push_back(kind.read(top.table(table.name), scene));
+      tables = {top.table(table.name)};
+    if (kind.has_properties())
+      for (const TomlTable& t : tables) t.allow_standard_errors();
+    if (table.listed)
+      read_listed_drives(kind, tables, scene);
+    else if (!tables.empty())
+      scene.drives.push_back(kind.read(tables.front(), scene));
   }
   scene.run = run_table().read(top.table("run"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);

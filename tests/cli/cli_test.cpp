@@ -1133,6 +1133,50 @@ hold_ps = 10
   EXPECT_EQ(run("errors rope.toml").code, 2);
 }
 
+// One tube is drawn out of seven against friction from atoms: the energy that slips take goes as the strength, which is
+// known to 11 %. A number of the scene has an error too, and the others are named.
+TEST_F(Cli, ErrorsOfFrictionAndOfTheSceneAreCarried) {
+  spit(dir / "rope.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[rope]
+tubes = 7
+length_nm = 7
+[damping]
+contact_viscosity_eV_ps_per_nm3 = 0
+bond_damping_per_ps = { value = 5, standard_error = 1 }
+[[friction]]
+from = "atoms"
+slip = "dry"
+[[grip]]
+end = "lower"
+tubes = [1, 2, 3, 4, 5, 6]
+[[grip]]
+end = "upper"
+tubes = [0]
+z = { displacement_nm = [[0, 0], [20, 1]] }
+[run]
+duration_ps = 20
+)");
+  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
+  const Outcome o = run("errors r --json --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json errors = Json::parse(o.out), slip = errors.at("at_the_end").at("friction_slip_eV");
+  const double value = slip.at("value"), strength = slip.at("parts").at("friction.strength");
+  EXPECT_NEAR(strength / value, 0.112, 0.03) << slip;
+  EXPECT_GE(slip.at("standard_error").get<double>(), strength);
+  EXPECT_TRUE(slip.at("parts").contains("friction.end_strength"));
+  EXPECT_TRUE(slip.at("parts").contains("damping.bond_damping_per_ps"));
+  EXPECT_EQ(errors.at("without_error"),
+            Json({"damping.contact_viscosity_eV_ps_per_nm3 = 0", "damping.pfc_local = 0 (default)"}));
+  const std::string changed = slurp(dir / "r/errors/friction-strength-plus/changed.toml");
+  EXPECT_NE(changed.find("# friction.strength changed by +11.2 %"), std::string::npos) << changed;
+  const Outcome table = run("errors r --quiet");
+  EXPECT_NE(table.out.find("No error is stated of, and none carried from: damping.contact"), std::string::npos)
+      << table.out;
+  EXPECT_EQ(table.out.find("0.000000000"), std::string::npos) << "zero by symmetry";
+}
+
 TEST_F(Cli, ResumeKeepsTheNameAndRefusesAnEndBehindIt) {
   spit(dir / "my-chain.toml", R"(
 format = "ropewalk-scene-1"

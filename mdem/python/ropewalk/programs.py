@@ -159,7 +159,8 @@ def gather(
     Arguments:
         campaign: a campaign, or its directory
         columns: observables; empty: all
-        mean_ps: means over the last rows of so much time, ps; None: the last row
+        mean_ps: means over the last rows of so much time, ps, each with its standard error in a column NAME_error, which is
+            nan where that time is too short for one; None: the last row
         series: all rows of all logs instead of the ends
     """
     directory = campaign.path if isinstance(campaign, Campaign) else os.fspath(campaign)
@@ -364,8 +365,8 @@ def convert(
 
 
 def errors(run: Run | str | os.PathLike[str], *, jobs: Optional[int] = None, again: bool = False) -> dict[str, Any]:
-    """Errors of a finished run's results that follow from those of its parameters, as `ropewalk errors`, which repeats the
-    run: what `--json` says, with units in the names.
+    """Errors of a finished run's results that follow from those of its sets, files of friction and typed numbers, as
+    `ropewalk errors`, which repeats the run: what `--json` says, with units in the names.
 
     Arguments:
         run: a run, or its directory
@@ -387,7 +388,8 @@ def rest(
     force: bool = False,
 ) -> dict[str, Any]:
     """Where a rope under a moment comes to rest, from below and from above, as `ropewalk rest`: what `--json` says, with
-    units in the names. "agree" tells whether both sides do; angles are None where they do not.
+    units in the names. "agree" tells whether both sides do and are at rest; angles are None where they do not. "verdict" is
+    "rests", "creeps" (with an "estimate"), "moves", "apart" or "several".
 
     Arguments:
         scene: a scene, a dict of its keys (units stand in their names), or a file

@@ -180,7 +180,13 @@ std::optional<LoadEffect> PeriodicLoad::effect() const {
   LoadEffect out;
   out.axes[LoadEffect::about_z] =
       LoadComponent::follows(LoadComponent::Is::moved, sum_of({{period_, schedule_}}), false);
-  if (tension.empty()) out.axes[LoadEffect::z] = LoadComponent::held(false);
+  if (!strain.empty())
+    out.axes[LoadEffect::z] =
+        LoadComponent::follows(LoadComponent::Is::moved, sum_of({{period_, Schedule(strain)}}), false);
+  else if (!tension.empty())
+    out.axes[LoadEffect::z] = LoadComponent::follows(LoadComponent::Is::loaded, Schedule(tension), false);
+  else
+    out.axes[LoadEffect::z] = LoadComponent::held(false);
   out.by = LoadEffect::By::body;
   out.between_ends = true;
   return out;

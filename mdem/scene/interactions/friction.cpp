@@ -62,6 +62,8 @@ class FrictionDrive : public Drive {
       if (!f.file.empty()) all.push_back(f.file);
     return all;
   }
+  // The other sections say what these numbers follow from.
+  bool depends_on(const std::string& key) const override { return key.rfind("friction.", 0) == 0; }
   void refuse(const TomlTable& top, const Scene& scene) const override {
     if (scene.contact.law == "none")
       throw top.error("friction", "acts between tubes in contact, and contact.law is \"none\"",

@@ -37,6 +37,11 @@ TEST(Influence, IsMoreThanRounding) {
   EXPECT_FALSE(has_influence(of(1e-6), large, torque));
   EXPECT_TRUE(has_influence(of(1e-3), large, torque));
   EXPECT_FALSE(has_influence(of(std::nan("")), large, torque));
+  const auto bent = [](double error) { return ResultError{error, 0, false, {}}; };
+  const std::vector<LogRow> swings = log_of(200, [](double t) { return 0.1 * std::sin(t); });
+  EXPECT_FALSE(has_influence(bent(1e-8), nothing, torque)) << "zero by symmetry";
+  EXPECT_FALSE(has_influence(bent(0.05), swings, torque)) << "as much as it swings by itself";
+  EXPECT_TRUE(has_influence(bent(0.5), swings, torque));
 }
 
 }  // namespace UNIT

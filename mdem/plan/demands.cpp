@@ -1,0 +1,220 @@
+#include "plan/demands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "observe/observe.hpp"
+
+namespace ropewalk {
+namespace {
+
+constexpr int parts_of_a_line = 16;
+constexpr double soon = 1e-6;  // ps, when loads that act at once have begun
+
+bool is_loaded(const LoadEffect& effect, std::size_t axis) {
+  return effect.axes[axis].is == LoadComponent::Is::loaded;
+}
+bool is_moved(const LoadEffect& effect, std::size_t axis) {
+  return effect.axes[axis].is == LoadComponent::Is::moved;
+}
+
+// Tubes of a film lie across z, where a force along z bends them.
+bool stand_upright(const State& s) {
+  double sum = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) sum += std::fabs(axis_of(s.orientation[i]).z());
+  return sum > 0.5 * static_cast<double>(s.size());
+}
+
+double helix(double radius, double winding) {
+  const double slope = radius * winding;
+  return slope * std::fabs(winding) / (1 + slope * slope);
+}
+
+}  // namespace
+
+double rope_radius_of(const Prepared& p) {
+  // At the lower end: the middle of a rope that begins bent aside is not its axis.
+  const auto end_of = [&](int tube) -> Vector3 {
+    return p.state.position[static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(tube)])];
+  };
+  Vector3 mean = Vector3::Zero();
+  int strands = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t)
+    if (p.topology.begins_strand(t)) mean += end_of(t), ++strands;
+  double largest = 0;
+  for (int t = 0; t < p.topology.tubes(); ++t)
+    if (p.topology.begins_strand(t)) largest = std::max(largest, (end_of(t) - mean / strands).head<2>().norm());
+  return largest;
+}
+
+// One reading of the rope: its winding and length, the twist and the strain of its tubes.
+struct DemandsAhead::At {
+  double winding = 0;
+  double twist = 0;
+  double strain = 0;
+  double tension = 0;
+};
+
+double DemandsAhead::Range::farthest(double more) const {
+  return std::max(std::fabs(low + more), std::fabs(high + more));
+}
+
+DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p)
+    : law_(p.topology.types[0]), bond_(p.topology.types[0].bond), drives_(end_drives(p.loads, p.topology)) {
+  tubes_ = p.topology.tubes();
+  for (const End end : {lower_end, upper_end})
+    for (std::size_t axis = 0; axis < 6; ++axis) loads_[end][axis] = load_of_each(drives_, end, axis);
+  turned_apart_ = moved_apart(drives_, LoadEffect::about_z);
+  drawn_apart_ = moved_apart(drives_, LoadEffect::z);
+  for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
+  period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
+  rope_radius_ = tubes_ > 1 ? rope_radius_of(p) : 0.0;
+  column_ = std::pow(units::pi * (rope_radius_ + p.topology.largest_radius()) / length_, 2);
+  if (tubes_ > 6) pressure_per_slope4_ = bond_.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) / 8;
+  length_kept_ = is_kept_between(drives_, LoadEffect::z);
+  upright_ = stand_upright(p.state);
+  for (const EndDrive& d : drives_) keeps_tilt_ = keeps_tilt_ || d.does.keeps_tilt;
+  for (const auto& load : p.loads)
+    if (const auto effect = load->effect(); effect && end_drives(*load, p.topology).empty())
+      inner_.push_back(*effect);
+  if (scene.start.temperature > 0) {
+    const double kt = units::boltzmann * scene.start.temperature, a = p.topology.types[0].element_length;
+    warm_curvature_ = std::sqrt(kt / (bond_.bend * a));
+    warm_twist_ = std::sqrt(kt / (bond_.twist * a));
+  }
+  read_start(scene, p);
+  times_ = {0, soon};
+  for (const EndDrive& d : drives_)
+    for (const LoadComponent& c : d.does.axes) add_times(c.course);
+  for (const LoadEffect& effect : inner_)
+    for (const LoadComponent& c : effect.axes) add_times(c.course);
+  std::sort(times_.begin(), times_.end());
+  times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+}
+
+void DemandsAhead::add_times(const Schedule& course) {
+  double before = 0;
+  for (const Schedule::Point& point : course.points()) {
+    for (int k = 1; k <= parts_of_a_line && point.time > before; ++k)
+      times_.push_back(before + (point.time - before) * k / parts_of_a_line);
+    before = std::max(before, point.time);
+  }
+}
+
+void DemandsAhead::read_start(const Scene& scene, const Prepared& p) {
+  winding_ = scene.start.turn;
+  if (scene.from_file() && tubes_ > 2)
+    winding_ = observe(p.topology, p.state, rope_shells(p.topology, p.state, 0), validities(scene, p.topology), 0,
+                       p.spacing)
+                   .geometric_twist /
+               length_;
+  bool first = true;
+  const auto widen = [&](Range& range, double value) {
+    range.low = first ? value : std::min(range.low, value);
+    range.high = first ? value : std::max(range.high, value);
+  };
+  for (int t = 0; t < tubes_; ++t) {
+    const double a = p.topology.type_of(t).element_length;
+    const auto begin = static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(t)]);
+    for (std::size_t i = begin; i + 1 < begin + static_cast<std::size_t>(p.topology.length_of(t)); ++i) {
+      const Frame fi = frame_of(p.state.orientation[i]), fj = frame_of(p.state.orientation[i + 1]);
+      bent_ = std::max(bent_, 2 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0)) / a);
+      widen(twist_, bond_twist_angle(fi, fj) / a);
+      widen(strain_, (p.state.position[i + 1] - p.state.position[i]).norm() / a - 1);
+      first = false;
+    }
+  }
+  bent_ = std::max(0.0, bent_ - helix(rope_radius_, winding_));
+}
+
+double DemandsAhead::turned(double time) const {
+  double angle = turned_apart_.value(time) / period_;
+  for (const LoadEffect& effect : inner_)
+    if (is_moved(effect, LoadEffect::about_z))
+      angle += effect.axes[LoadEffect::about_z].course.value(time) / length_;
+  return angle;
+}
+
+// On each tube, positive: a tension, or a couple that winds to the right. Two ends that are loaded balance one
+// another, and the larger counts.
+double DemandsAhead::axial(std::size_t axis, double time) const {
+  const double upper = loads_[upper_end][axis].value(time), lower = -loads_[lower_end][axis].value(time);
+  double out = std::fabs(upper) >= std::fabs(lower) ? upper : lower;
+  for (const LoadEffect& effect : inner_)
+    if (is_loaded(effect, axis)) out += effect.axes[axis].course.value(time);
+  return out;
+}
+
+double DemandsAhead::sideways(std::size_t axis, double time) const {
+  double out =
+      std::max(std::fabs(loads_[upper_end][axis].value(time)), std::fabs(loads_[lower_end][axis].value(time)));
+  for (const LoadEffect& effect : inner_)
+    if (is_loaded(effect, axis)) out += std::fabs(effect.axes[axis].course.value(time));
+  return out;
+}
+
+void DemandsAhead::add(const At& what, Demands& out) const {
+  const double slope = rope_radius_ * what.winding;
+  double curvature = helix(rope_radius_, what.winding);
+  if (keeps_tilt_ && what.tension > 0)
+    curvature = std::max(curvature, std::fabs(slope) * std::sqrt(what.tension / bond_.bend));
+  out.curvature = std::max(out.curvature, curvature);
+  out.twist = std::max(out.twist, std::fabs(what.twist));
+  out.strain = std::max(out.strain, std::fabs(what.strain));
+  if (length_kept_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
+}
+
+Demands DemandsAhead::at(double time) const {
+  Demands out;
+  const bool begun = time > 0;
+  const double couple = begun ? axial(LoadEffect::about_z, time) : 0,
+               pull = begun && upright_ ? axial(LoadEffect::z, time) : 0;
+  // As the ends keep it; without them, as it starts.
+  const double more = turned(time), winding = winding_ + more;
+  const double twist = twist_.farthest(more);
+  if (length_kept_) {
+    const double drawn = drawn_apart_.value(time) / period_,
+                 along = 1 + (drawn < 0 && tubes_ > 0 ? std::max(drawn, -column_) : drawn);
+    const double outer = std::hypot(along, rope_radius_ * winding) / std::hypot(1, rope_radius_ * winding_) - 1;
+    const double strain = std::max(strain_.farthest(along - 1), strain_.farthest(outer));
+    add({winding, twist, strain, bond_.stretch * std::max(0.0, outer)}, out);
+  } else if (!begun) {
+    add({winding, twist, strain_.farthest(0), 0}, out);
+  } else {
+    add({winding, couple != 0 ? 0 : twist, pull != 0 ? law_.strain_under(pull, couple != 0 ? 0 : twist) : 0, pull},
+        out);
+  }
+  if (couple != 0) {
+    const double twisted = law_.twist_under(couple, 0),
+                 strain = !length_kept_ && pull != 0 ? law_.strain_under(pull, twisted) : 0;
+    add({twisted, twisted, strain, pull}, out);
+    add({winding_ + twisted, twist_.farthest(twisted), strain, pull}, out);
+  }
+  // What bends each tube beside the winding.
+  double bent = 0, force = std::hypot(sideways(0, time), sideways(1, time));
+  for (const EndDrive& d : drives_)
+    for (std::size_t axis = 3; axis < LoadEffect::about_z; ++axis)
+      if (is_moved(d.does, axis)) bent += std::fabs(d.does.axes[axis].course.value(time));
+  if (!upright_) force = std::hypot(force, sideways(LoadEffect::z, time));
+  out.curvature += bent / length_ + warm_curvature_ + bent_;
+  out.strain += rope_radius_ * bent / length_;
+  out.twist += warm_twist_;
+  if (const double moment = force * length_ + std::hypot(sideways(3, time), sideways(4, time)); begun && moment > 0)
+    out.curvature += law_.curvature_under(moment);
+  return out;
+}
+
+Demands DemandsAhead::largest() const {
+  Demands out;
+  for (const double time : times_) {
+    const Demands now = at(time);
+    out.curvature = std::max(out.curvature, now.curvature);
+    out.twist = std::max(out.twist, now.twist);
+    out.strain = std::max(out.strain, now.strain);
+    out.pressure = std::max(out.pressure, now.pressure);
+  }
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,67 @@
+// What the start and the loads of a scene ask of its tubes together, with their signs, at any time of the run.
+//
+// Where both ends are kept, a rope is as long and as wound as they ask for: by what it is at the start, and by what
+// they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its own bonds
+// bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between what they were
+// and nothing, and the larger of both sums counts. Everything is even along the rope, and the rope as a whole winds
+// no farther than its tubes twist. These are upper estimates of motions without shocks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "plan/tube_law.hpp"
+#include "scene/prepare.hpp"
+#include "sim/dynamics/end_drives.hpp"
+
+namespace ropewalk {
+
+// Largest values, without their signs.
+struct Demands {
+  double curvature = 0, twist = 0;  // 1/nm, rad/nm
+  double strain = 0;
+  double pressure = 0;  // eV/nm^3, on the innermost tube
+};
+
+class DemandsAhead {
+ public:
+  DemandsAhead(const Scene& scene, const Prepared& prepared);
+
+  Demands at(double time) const;                               // at 0: of the start alone
+  const std::vector<double>& times() const { return times_; }  // ps: 0, the corners of all courses, and in between
+  Demands largest() const;
+
+ private:
+  struct Range {
+    double low = 0, high = 0;
+    double farthest(double more) const;  // from zero, of both ends moved by `more`
+  };
+  struct At;
+
+  void read_start(const Scene& scene, const Prepared& p);
+  void add_times(const Schedule& course);
+  double turned(double time) const;  // rad/nm, since the start
+  double axial(std::size_t axis, double time) const;
+  double sideways(std::size_t axis, double time) const;
+  void add(const At& what, Demands& out) const;
+
+  TubeLaw law_;
+  BondStiffness bond_;
+  EndDrives drives_;
+  std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
+  Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
+  std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
+  double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
+  bool length_kept_ = false, keeps_tilt_ = false, upright_ = true;
+  int tubes_ = 0;
+  double warm_curvature_ = 0, warm_twist_ = 0;
+  // The start.
+  Range twist_, strain_;
+  double bent_ = 0, winding_ = 0;  // 1/nm, beside that of the winding (rad/nm) of the rope
+  std::vector<double> times_;
+};
+
+// nm: distance of the farthest tube from the line through the mean of all, at the start.
+double rope_radius_of(const Prepared& prepared);
+
+}  // namespace ropewalk
