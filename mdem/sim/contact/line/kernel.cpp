@@ -153,7 +153,7 @@ VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<
     At::sum_up(d, form.c, at, sum);
     for (int k = 0; k < K; ++k) u[k] = ops::IfThenElseZero(ops::Lt(X[k], cutoff2), sum[k]);
   }
-  if (ops::AllFalse(d, ops::Lt(nearest, core2))) return;
+  if (__builtin_expect(ops::AllFalse(d, ops::Lt(nearest, core2)), true)) return;
   for (int k = 0; k < K; ++k) {
     const auto in_core = ops::Lt(X[k], core2);
     const auto rho = ops::Sqrt(ops::Max(X[k], ops::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
@@ -169,19 +169,6 @@ VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<
         ops::Div(ops::Mul(ops::MulAdd(e, v2, v1), ops::Set(d, t.unit)), ops::Mul(rho, ops::Set(d, 2 * t.scale)));
     slope[k] = ops::IfThenElse(in_core, of_core, slope[k]);
   }
-}
-
-template <class D>
-VEC_INLINE double total(D d, ops::Vec<D> v) {
-  return static_cast<double>(ops::GetLane(ops::SumOfLanes(d, v)));
-}
-
-// The sums of the lanes of six vectors, force and moment.
-template <class V>
-VEC_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], double (&m)[3]) {
-  const ops::DFromV<V> d;
-  f[0] = total(d, fx), f[1] = total(d, fy), f[2] = total(d, fz);
-  m[0] = total(d, mx), m[1] = total(d, my), m[2] = total(d, mz);
 }
 
 // The contact of one element. N is the number of its nodes where the compiler knows it, or 0.
@@ -233,8 +220,7 @@ struct ElementContact {
     const D d;
     const V ahead = ops::Max(ops::Sub(ops::Abs(nodes.along), ops::Set(d, pair.half)), ops::Zero(d));
     const V least = ops::MulAdd(ahead, ahead, ops::NegMulAdd(nodes.along, nodes.along, nodes.square));
-    return ops::bits_of_mask(d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)),
-                                         ops::FirstN(d, static_cast<std::size_t>(count))));
+    return ops::bits_of_mask(d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)), ops::FirstN(d, count)));
   }
 
   // Sums over nodes of the element: A and B, and the energy.
@@ -286,7 +272,7 @@ struct ElementContact {
       T* const to = found.add(first, lanes);
       for (int a = 0; a < 3; ++a) ops::Store(nodes.separation[a], d, to + a * lanes);
       // Lanes of no node of this span are put out of reach.
-      const auto own = ops::FirstN(d, static_cast<std::size_t>(end - first));
+      const auto own = ops::FirstN(d, end - first);
       ops::Store(ops::IfThenElse(own, nodes.square, ops::Set(d, pair.far2)), d, to + 3 * lanes);
       ops::Store(ops::Add(nodes.along, nodes.along), d, to + 4 * lanes);
     }
@@ -316,8 +302,11 @@ struct ElementContact {
 
   VEC_INLINE void give(std::size_t element, std::size_t at, ContactBuffer<T>& out) const {
     double f[3], m[3];
-    totals(force[0], force[1], force[2], moment[0], moment[1], moment[2], f, m);
-    for (double& a : m) a *= in.unit;
+    for (int a = 0; a < 3; ++a) {
+      const auto [of_force, of_moment] = ops::SumsOfLanes(force[a], moment[a]);
+      f[a] = static_cast<double>(of_force);
+      m[a] = static_cast<double>(of_moment) * in.unit;
+    }
     const double nx = in.axis->x[element], ny = in.axis->y[element], nz = in.axis->z[element];
     out.fx[at] -= static_cast<T>(f[0]);
     out.fy[at] -= static_cast<T>(f[1]);
@@ -325,7 +314,7 @@ struct ElementContact {
     out.tx[at] -= static_cast<T>(ny * m[2] - nz * m[1]);
     out.ty[at] -= static_cast<T>(nz * m[0] - nx * m[2]);
     out.tz[at] -= static_cast<T>(nx * m[1] - ny * m[0]);
-    if constexpr (energies) out.energy += total(D(), energy);
+    if constexpr (energies) out.energy += static_cast<double>(ops::SumOfLanes(energy));
   }
 };
 
