@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
 #include <utility>
 #if defined(__x86_64__)
@@ -110,6 +109,8 @@ struct VectorOf {
   using T = TFromD<D>;
   typedef T Lanes __attribute__((vector_size(sizeof(T) * D::lanes)));
   typedef typename IntegerOf<sizeof(T)>::Signed Bits __attribute__((vector_size(sizeof(T) * D::lanes)));
+  // Numbers of type T in memory. A store changes nothing else, so that pointers and counts stay in registers.
+  typedef T InMemory __attribute__((vector_size(sizeof(T) * D::lanes), aligned(alignof(T))));
   using Tag = D;
   Lanes raw;
 
@@ -142,13 +143,11 @@ VEC_INLINE constexpr std::size_t Lanes(D) {
 
 template <class D>
 VEC_INLINE Vec<D> Load(D, const TFromD<D>* p) {
-  Vec<D> v;
-  std::memcpy(&v.raw, p, sizeof v.raw);
-  return v;
+  return {*reinterpret_cast<const typename Vec<D>::InMemory*>(p)};
 }
 template <class D>
 VEC_INLINE void Store(Vec<D> v, D, TFromD<D>* p) {
-  std::memcpy(p, &v.raw, sizeof v.raw);
+  *reinterpret_cast<typename Vec<D>::InMemory*>(p) = v.raw;
 }
 // --- arithmetic -----------------------------------------------------------------------------------------
 
