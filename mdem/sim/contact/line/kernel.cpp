@@ -3,7 +3,7 @@
 //
 // One element i at a time against vectors of consecutive nodes of its neighbours, at separations d from the centre
 // of i. The nodes of i are at s_k n, so that all of them share |d|^2 and d.n:
-//   X_k = |d - s_k n|^2 = |d|^2 + s_k (s_k - 2 d.n),   g_k = -2/delta u'(y(X_k)) w   (force per separation)
+//   X_k = |d - s_k n|^2 = |d|^2 + s_k^2 - 2 s_k d.n,   g_k = -2/delta u'(y(X_k)) w   (force per separation)
 //   force on the node  f = sum_k g_k (d - s_k n) = A d - B n,   A = sum_k g_k,   B = sum_k s_k g_k
 //   on i: force -sum f, torque sum_k s_k n x (-g_k (d - s_k n)) = -n x sum B d
 #include <type_traits>
@@ -180,8 +180,8 @@ struct ElementContact {
   using D = typename L::D;
   using V = ops::Vec<D>;
   static constexpr int lanes = static_cast<int>(ops::Lanes(D()));
-  // Nodes of the element whose polynomials are evaluated at once: as many as the registers hold.
-  static constexpr int at_once = N == 0 ? 2 : VEC_TARGET <= VEC_AVX512 ? std::min(N, 6) : (N + 1) / ((N + 2) / 3);
+  // Pairs of opposite nodes of the element whose polynomials are evaluated at once: as many as the registers hold.
+  static constexpr int at_once = VEC_TARGET <= VEC_AVX512 && N > 0 ? std::min(N / 2, 3) : 1;
 
   const In& in;
   typename In::Coordinate centre[3];
@@ -225,35 +225,41 @@ struct ElementContact {
 
   // Sums over nodes of the element: A and B, and the energy.
   struct NodeSums {
-    V A[2], B[2], u;
+    V A, B, u;
   };
-  // K nodes, from s on. Two sums of each, as one addition waits for the last one.
-  template <int K>
+  // Nodes at s[k] and -s[k], which share |d|^2 + s^2, and where `middle` the one at the centre.
+  template <int pairs, bool middle>
   VEC_INLINE void add_nodes(const Table& table, const T* s, V square, V twice_along, NodeSums& sums) {
+    constexpr int K = 2 * pairs + middle;
     const D d;
     V X[K], u[K], slope[K];
-    for (int k = 0; k < K; ++k) {
-      const V sk = ops::Set(d, s[k]);
-      X[k] = ops::MulAdd(sk, ops::Sub(sk, twice_along), square);
+    for (int k = 0; k < pairs; ++k) {
+      const V sk = ops::Set(d, s[k]), either = ops::Add(square, ops::Set(d, s[k] * s[k]));
+      X[2 * k] = ops::NegMulAdd(sk, twice_along, either);
+      X[2 * k + 1] = ops::MulAdd(sk, twice_along, either);
     }
+    if constexpr (middle) X[K - 1] = square;
     radial<energies>(d, table, X, u, slope);
-    for (int k = 0; k < K; ++k) {
-      sums.A[k % 2] = ops::Add(sums.A[k % 2], slope[k]);
-      sums.B[k % 2] = ops::MulAdd(ops::Set(d, s[k]), slope[k], sums.B[k % 2]);
-      if constexpr (energies) sums.u = ops::Add(sums.u, u[k]);
+    if constexpr (middle) sums.A = ops::Add(sums.A, slope[K - 1]);
+    for (int k = 0; k < pairs; ++k) {
+      sums.A = ops::Add(sums.A, ops::Add(slope[2 * k], slope[2 * k + 1]));
+      sums.B = ops::MulAdd(ops::Set(d, s[k]), ops::Sub(slope[2 * k], slope[2 * k + 1]), sums.B);
     }
+    if constexpr (energies)
+      for (int k = 0; k < K; ++k) sums.u = ops::Add(sums.u, u[k]);
   }
   VEC_INLINE void add_nodes_of_element(const PairTables<Table>& pair, V square, V twice_along, NodeSums& sums) {
-    const T* s = pair.s.data();
     const int nodes = N > 0 ? N : static_cast<int>(pair.s.size());
+    const T* const s = pair.s.data() + (nodes + 1) / 2;
     int k = 0;
-    for (; k + at_once <= nodes; k += at_once) add_nodes<at_once>(pair.table, s + k, square, twice_along, sums);
-    constexpr int last = N % at_once;
-    if constexpr (N == 0) {
-      if (k < nodes) add_nodes<1>(pair.table, s + k, square, twice_along, sums);
-    } else if constexpr (last > 0) {
-      add_nodes<last>(pair.table, s + k, square, twice_along, sums);
+    if constexpr (N % 2 == 1) {
+      add_nodes<at_once, true>(pair.table, s, square, twice_along, sums);
+      k = at_once;
+    } else if constexpr (N == 0) {
+      if (nodes % 2 == 1) add_nodes<0, true>(pair.table, s, square, twice_along, sums);
     }
+    for (; k + at_once <= nodes / 2; k += at_once)
+      add_nodes<at_once, false>(pair.table, s + k, square, twice_along, sums);
   }
 
   // Keeps the vectors of nodes of a span of which some are in reach. The sums over them come later: so the many
@@ -283,10 +289,9 @@ struct ElementContact {
     const V zero = ops::Zero(d), weight = ops::Set(d, pair.weight);
     for (int v = 0; v < found.count; ++v) {
       const T* const nodes = found.at(v, lanes);
-      NodeSums sums{{zero, zero}, {zero, zero}, zero};
+      NodeSums sums{zero, zero, zero};
       add_nodes_of_element(pair, ops::Load(d, nodes + 3 * lanes), ops::Load(d, nodes + 4 * lanes), sums);
-      const V A = ops::Mul(ops::Add(sums.A[0], sums.A[1]), weight),
-              B = ops::Mul(ops::Add(sums.B[0], sums.B[1]), weight);
+      const V A = ops::Mul(sums.A, weight), B = ops::Mul(sums.B, weight);
       if constexpr (energies) energy = ops::MulAdd(sums.u, ops::Set(d, pair.energy_weight), energy);
       const auto first = static_cast<std::size_t>(found.first[static_cast<std::size_t>(v)]);
       T* const on[3] = {forces.x.data() + first, forces.y.data() + first, forces.z.data() + first};
