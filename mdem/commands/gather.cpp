@@ -4,6 +4,7 @@
 #include "campaign/campaign.hpp"
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "run/tell.hpp"
 
 namespace ropewalk {
 

@@ -274,11 +274,17 @@ void TomlTable::allow_standard_errors() const { node_->has_errors = true; }
 
 std::optional<double> TomlTable::standard_error(const std::string& key) const {
   if (!node_->has_errors || !is_table(key)) return std::nullopt;
-  return table(key).number("standard_error", Bounds::non_negative());
+  const TomlTable both = table(key);  // finish() asks whether all of one table was read
+  both.number("value", Bounds::any());
+  return both.number("standard_error", Bounds::non_negative());
 }
 
 double TomlTable::number(const std::string& key, const Bounds& bounds) const {
-  if (standard_error(key)) return table(key).number("value", bounds);
+  if (node_->has_errors && is_table(key)) {
+    const TomlTable both = table(key);
+    both.number("standard_error", Bounds::non_negative());
+    return both.number("value", bounds);
+  }
   const toml::node& n = node_->required(*this, key);
   return checked_number(*this, key, n, bounds);
 }

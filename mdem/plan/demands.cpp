@@ -28,7 +28,7 @@ bool stand_upright(const State& s) {
 
 double helix(double radius, double winding) {
   const double slope = radius * winding;
-  return slope * std::fabs(winding) / (1 + slope * slope);
+  return slope * winding / (1 + slope * slope);
 }
 
 }  // namespace

@@ -30,12 +30,11 @@ ErrorInputs inputs_of(const std::string& parameters, const std::string& more) {
 }
 
 TEST(ErrorInputs, AreAllThatHaveAnError) {
-  const ErrorInputs plain = inputs_of("\"cnt-10-10-tersoff\"", "");
+  const ErrorInputs plain = inputs_of("\"cnt-10-10-tersoff\"", "[bond]\nlaw = \"harmonic\"\n");
   EXPECT_EQ(names(plain), (std::vector<std::string>{"EA", "EI", "GJ", "contact"}));
-  const ErrorInputs rich =
-      inputs_of("\"cnt-10-10-tersoff\"",
-                "[bond]\nanharmonic = true\n[[friction]]\nfrom = \"atoms\"\n[failure]\nstrain = { value = 0.05, "
-                "standard_error = 0.01 }\nmoment_nN_nm = 15\n");
+  const ErrorInputs rich = inputs_of("\"cnt-10-10-tersoff\"",
+                                     "[[friction]]\nfrom = \"atoms\"\n[failure]\nstrain = { value = 0.05, "
+                                     "standard_error = 0.01 }\nmoment_nN_nm = 15\n");
   EXPECT_THAT(names(rich),
               IsSupersetOf({"e3", "es2", "e4", "s4", "b4", "friction.strength", "friction.spin_strength",
                             "friction.end_strength", "friction.elastic_slip", "failure.strain"}));

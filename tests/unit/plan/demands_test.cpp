@@ -75,9 +75,9 @@ TEST(Demands, HaveTheSignsOfStartAndLoad) {
     for (const double time : {20.0, 50.0, 80.0}) EXPECT_LT(against.wall_twist(time), against.wall_twist(time - 10));
     EXPECT_LT(against.demands.at(100).curvature, against.demands.at(0).curvature);
     EXPECT_GT(along.demands.at(100).curvature, along.demands.at(0).curvature);
-    EXPECT_THAT(against.notes(), HasSubstr("The scene begins with wall_twist at 0.0241, beyond its limit of 0.01"));
+    EXPECT_THAT(against.notes(), HasSubstr("The scene begins with wall_twist at 0.024, beyond its limit of 0.01"));
     EXPECT_THAT(along.notes(),
-                HasSubstr("The scene begins with wall_twist at 0.0241, and the load may bring it to"));
+                HasSubstr("The scene begins with wall_twist at 0.024, and the load may bring it to"));
   }
 }
 
