@@ -28,6 +28,9 @@ constexpr double least_step = 0.005;
 void multiply(ParameterSet& set, const std::vector<std::string>& keys, double factor) {
   for (Quantity& q : set.quantities)
     if (std::find(keys.begin(), keys.end(), q.key) != keys.end()) q.value *= factor;
+  // The force of the pull goes on from that of EA.
+  if (set.pull && std::find(keys.begin(), keys.end(), "bond.EA") != keys.end())
+    for (double& force : set.pull->force) force *= factor;
 }
 
 // Contacts between tubes, about as many as in a hexagonal rope; each has a registry of its own.
