@@ -11,7 +11,9 @@
 namespace ropewalk {
 
 bool SceneTable::optional() const {
-  return listed || std::any_of(keys.begin(), keys.end(), [](const SceneKey& k) { return k.required(); });
+  // Also "required but for ...".
+  return listed || std::any_of(keys.begin(), keys.end(),
+                               [](const SceneKey& k) { return k.standard.rfind("required", 0) == 0; });
 }
 
 std::string as_toml(double value) { return fmt::format("{:.6g}", value); }

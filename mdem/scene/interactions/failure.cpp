@@ -262,7 +262,7 @@ const KeyTable<FailureDrive>& failure_table() {
       "tubes break; without this table they do not, at whatever load",
       {Key::number(
            "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
-           otherwise("0.16", "no limit"),
+           otherwise("0.16", "required but for from and moment_nN_nm"),
            "of a tube, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
            "0.12 "
            "in experiments (DOI 10.1126/science.287.5453.637)"),

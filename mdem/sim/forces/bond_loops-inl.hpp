@@ -20,40 +20,6 @@ void frames_of(const QuaternionArray& q, std::ptrdiff_t origin, std::ptrdiff_t b
   }
 }
 
-double largest_strain(const TubeType& type, const Vec3Array& position, const FrameArray& frames,
-                      const BondRange& bonds) {
-  const double *x = position.x.data() + bonds.begin, *y = position.y.data() + bonds.begin,
-               *z = position.z.data() + bonds.begin;
-  const double *tx = frames.t.x.data(), *ty = frames.t.y.data(), *tz = frames.t.z.data();
-  const double a = type.element_length;
-  double largest = -1;
-#pragma GCC ivdep
-  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
-    const std::ptrdiff_t j = i + 1;
-    const double length = std::sqrt(forms::vec_norm2({x[j] - x[i], y[j] - y[i], z[j] - z[i]}));
-    const forms::BodyFrame fi{{}, {}, {tx[i], ty[i], tz[i]}}, fj{{}, {}, {tx[j], ty[j], tz[j]}};  // axes alone
-    largest = std::max(largest, forms::arc_strain(a, length, fi, fj));
-  }
-  return largest;
-}
-
-// Adds to these bonds what the law of stretch adds beyond its window, where few are; returns the energy.
-double add_beyond(const TubeType& type, const Vec3Array& position, const FrameArray& frames, const BondRange& bonds,
-                  BondArray& out) {
-  double energy = 0;
-  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
-    const auto at = static_cast<std::size_t>(i), from = static_cast<std::size_t>(bonds.begin + i);
-    const forms::BondAction f =
-        forms::bond_beyond(&type.bond, type.element_length, plain(position[from + 1] - position[from]),
-                           plain(frames[at]), plain(frames[at + 1]));
-    out.force_j.add(at, vector(f.force_j));
-    out.torque_i.add(at, vector(f.torque_i));
-    out.torque_j.add(at, vector(f.torque_j));
-    energy += f.energy.stretch;
-  }
-  return energy;
-}
-
 // Returns their energies; `slips` becomes negative where a bond does.
 template <bool anharmonic>
 __attribute__((always_inline)) inline BondEnergy bond_forces(const TubeType& type, const Vec3Array& position,
@@ -103,10 +69,41 @@ __attribute__((flatten)) BondEnergy harmonic_forces(const TubeType& type, const 
 __attribute__((flatten)) BondEnergy anharmonic_forces(const TubeType& type, const Vec3Array& position,
                                                       const FrameArray& frames, const BondRange& bonds,
                                                       BondArray& out, double& slips) {
-  BondEnergy energy = bond_forces<true>(type, position, frames, bonds, out, slips);
-  // In a loop of its own, so that bonds within the window keep their bits.
-  if (largest_strain(type, position, frames, bonds) > type.bond.anharmonic.max_strain)
-    energy.stretch += add_beyond(type, position, frames, bonds, out);
+  return bond_forces<true>(type, position, frames, bonds, out, slips);
+}
+
+// A loop of its own, so that bonds within the window have the bits of the loop above.
+double largest_strain(const TubeType& type, const Vec3Array& position, const FrameArray& frames,
+                      const BondRange& bonds) {
+  const double *x = position.x.data() + bonds.begin, *y = position.y.data() + bonds.begin,
+               *z = position.z.data() + bonds.begin;
+  const double *tx = frames.t.x.data(), *ty = frames.t.y.data(), *tz = frames.t.z.data();
+  const double a = type.element_length;
+  double largest = -1;
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
+    const std::ptrdiff_t j = i + 1;
+    const double length = std::sqrt(forms::vec_norm2({x[j] - x[i], y[j] - y[i], z[j] - z[i]}));
+    const forms::BodyFrame fi{{}, {}, {tx[i], ty[i], tz[i]}}, fj{{}, {}, {tx[j], ty[j], tz[j]}};  // axes alone
+    largest = std::max(largest, forms::arc_strain(a, length, fi, fj));
+  }
+  return largest;
+}
+
+// Adds to these bonds what the law of stretch adds beyond its window, where few are; returns the energy.
+double add_beyond(const TubeType& type, const Vec3Array& position, const FrameArray& frames, const BondRange& bonds,
+                  BondArray& out) {
+  double energy = 0;
+  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
+    const auto at = static_cast<std::size_t>(i), from = static_cast<std::size_t>(bonds.begin + i);
+    const forms::BondAction f =
+        forms::bond_beyond(&type.bond, type.element_length, plain(position[from + 1] - position[from]),
+                           plain(frames[at]), plain(frames[at + 1]));
+    out.force_j.add(at, vector(f.force_j));
+    out.torque_i.add(at, vector(f.torque_i));
+    out.torque_j.add(at, vector(f.torque_j));
+    energy += f.energy.stretch;
+  }
   return energy;
 }
 
