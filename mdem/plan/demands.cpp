@@ -188,8 +188,12 @@ Demands DemandsAhead::at(double time) const {
   if (couple != 0) {
     const double twisted = law_.twist_under(couple, 0),
                  strain = !length_kept_ && pull != 0 ? law_.strain_under(pull, twisted) : 0;
-    add({twisted, twisted, strain, pull}, out);
-    add({winding_ + twisted, twist_.farthest(twisted), strain, pull}, out);
+    // The rope as a whole winds no farther than by Hooke's law where its tubes give way.
+    const double by_hooke = couple / bond_.twist,
+                 winds = std::fabs(twisted) < std::fabs(by_hooke) ? twisted : by_hooke;
+    add({winds, twisted, strain, pull}, out);
+    if (std::fabs(twisted) < law_.largest_twist())
+      add({winding_ + winds, twist_.farthest(twisted), strain, pull}, out);
   }
   // What bends each tube beside the winding.
   double bent = 0, force = std::hypot(sideways(0, time), sideways(1, time));

@@ -67,7 +67,7 @@ double TubeLaw::strain_under(double tension_, double twist) const {
 
 double TubeLaw::twist_under(double torque_, double strain) const {
   return first_reached([&](double tau) { return torque(strain, tau); }, torque_, torque_ / bond_.twist,
-                       0.5 * units::pi / length_);
+                       largest_twist());
 }
 
 double TubeLaw::curvature_under(double moment_) const {

@@ -24,6 +24,7 @@ class TubeLaw {
   double strain_under(double tension, double twist) const;
   double twist_under(double torque, double strain) const;
   double curvature_under(double moment) const;  // never negative
+  double largest_twist() const { return 0.5 * units::pi / length_; }
 
  private:
   BondStiffness bond_;

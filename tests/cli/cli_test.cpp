@@ -1085,6 +1085,8 @@ TEST_F(Cli, ErrorsOfTheSetAreCarriedThroughARun) {
   spit(dir / "rope.toml", R"(
 format = "ropewalk-scene-1"
 parameters = "set.toml"
+[bond]
+law = "harmonic"
 [rope]
 tubes = 7
 length_nm = 7
@@ -1139,6 +1141,8 @@ TEST_F(Cli, ErrorsOfFrictionAndOfTheSceneAreCarried) {
   spit(dir / "rope.toml", R"(
 format = "ropewalk-scene-1"
 parameters = "cnt-10-10-tersoff"
+[bond]
+law = "harmonic"
 [rope]
 tubes = 7
 length_nm = 7
@@ -1154,9 +1158,9 @@ tubes = [1, 2, 3, 4, 5, 6]
 [[grip]]
 end = "upper"
 tubes = [0]
-z = { displacement_nm = [[0, 0], [20, 1]] }
+z = { displacement_nm = [[0, 0], [10, 0.6]] }
 [run]
-duration_ps = 20
+duration_ps = 10
 )");
   ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
   const Outcome o = run("errors r --json --quiet");
