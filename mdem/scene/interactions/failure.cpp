@@ -1,7 +1,7 @@
 // [failure] tubes that break: a bond between two elements breaks for good in the first step in which it is
-// strained, or bends, beyond its limit.
+// strained, or bends, beyond its limit, or in which it can carry no more torque.
 //
-//   |x_j - x_i|/a - 1 > strain,   or   bending moment > moment
+//   |x_j - x_i|/a - 1 > strain,   or   bending moment > moment,   or   twist of the bond >= 90 degrees
 //
 // The limit of strain may scatter along the tube, by the seed and the number of the element: the weakest place of a
 // length l has the distribution of W. Weibull (J. Appl. Mech. 18, 293 (1951)),
@@ -138,9 +138,15 @@ class TubeFailure : public ForceTerm {
   std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
 
  private:
+  // By a hair before BondSum::slipping, so that no run ends for a bond that breaks.
+  static bool slips(const Quaternion& from, const Quaternion& to) {
+    const Quaternion turn = from.conjugate() * to;
+    return turn.z() * turn.z() >= (1 - 1e-9) * turn.w() * turn.w();
+  }
   bool breaks(const TubeType& type, const State& state, int element) const {
     const auto i = static_cast<std::size_t>(element);
     if (broken_[i]) return false;
+    if (slips(state.orientation[i], state.orientation[i + 1])) return true;
     const Vector3 d = state.position[i + 1] - state.position[i];
     const double longest = type.element_length * (1 + limit_[i]);
     return d.squaredNorm() > longest * longest ||
