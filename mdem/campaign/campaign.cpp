@@ -9,13 +9,14 @@
 
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
-#include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
 #include "report/runs_page.hpp"
+#include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
+#include "run/results.hpp"
 
 namespace ropewalk {
 namespace {
@@ -56,10 +57,6 @@ std::string cells_of(const std::vector<double>& values, const std::vector<std::s
   for (const std::size_t k : columns)
     text += std::isfinite(values[k]) ? fmt::format(",{}", values[k]) : std::string(",nan");
   return text;
-}
-
-std::string limits_of(const RunDirectory& dir) {
-  return fs::exists(dir.limits()) ? passed_words(read_limits(dir.limits()).limits) : "";
 }
 
 // Killed before its sweep.toml was written.
@@ -182,14 +179,17 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
   const std::vector<std::size_t> columns = columns_of(options);
   std::string text = "point";
   for (const std::string& key : sweep.keys()) text += "," + csv_cell(key);
-  text += ",status";
+  text += ",status," + column_names(limit_columns());
   for (const std::size_t k : columns) text += fmt::format(",{}", observables()[k].name);
+  const bool with_results = options.columns.empty() && !options.series;
+  if (with_results) text += "," + column_names(result_columns());
   text += options.series ? "\n" : ",limits_passed\n";
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
     std::string begin = csv_cell(p.name);
     for (const std::string& value : p.values) begin += "," + csv_cell(without_quotes(value));
-    begin += "," + progress_of(run).status;
+    const std::vector<LimitRecord> limits = limits_of(run);
+    begin += "," + progress_of(run).status + "," + limit_cells(limits);
     const std::vector<LogRow> log = fs::exists(run.log()) ? read_log(run.log()) : std::vector<LogRow>();
     if (options.series) {
       for (const LogRow& row : log) text += begin + cells_of(row.values(), columns) + "\n";
@@ -201,7 +201,10 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
                        "leave --mean out, and the table has their ends");
     text += begin;
     text += log.empty() ? std::string(columns.size(), ',') : cells_of(end_of(log, options.mean_ps), columns);
-    text += "," + csv_cell(limits_of(run)) + "\n";
+    if (with_results)
+      text += "," + (log.empty() ? std::string(result_columns().size() - 1, ',')
+                                 : result_cells(run_results(log, limits, tube_breaks(run.events()))));
+    text += "," + csv_cell(passed_words(limits)) + "\n";
   }
   return text;
 }

@@ -56,9 +56,10 @@ Sweep read_campaign(const CampaignDirectory& dir);
 struct GatherOptions {
   double mean_ps = 0;                // mean over the last rows of so much time; 0: the last row
   bool series = false;               // every row of every log instead
-  std::vector<std::string> columns;  // of the log; empty: all
+  std::vector<std::string> columns;  // of the log; empty: all, and result_columns()
 };
-// One line per point: its name, the values of the keys that vary, how it ended, the observables, the limits passed.
+// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the observables, what
+// came of it, the limits passed.
 // A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);

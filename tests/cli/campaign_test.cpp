@@ -61,8 +61,10 @@ TEST_F(Campaign, TableIsTheSameAfterInterruptions) {
   EXPECT_NE(on.err.find("2 of 8 points are done already"), std::string::npos) << on.err;
   EXPECT_EQ(slurp(dir / "parts" / "table.csv"), table);
   // Gathered otherwise.
-  EXPECT_EQ(lines(run("gather parts --columns beta_deg,kinetic_eV --mean 4").out)[0],
-            "point,rope.tubes,thermostat.temperature_K,start.seed,status,beta_deg,kinetic_eV,limits_passed");
+  EXPECT_EQ(
+      lines(run("gather parts --columns beta_deg,kinetic_eV --mean 4").out)[0],
+      "point,rope.tubes,thermostat.temperature_K,start.seed,status,first_limit,first_limit_ps,beta_deg,kinetic_eV,"
+      "limits_passed");
   EXPECT_EQ(lines(run("gather whole --series --columns time_ps").out).size(), 1 + 8 * 13u);
   EXPECT_EQ(run("gather parts --columns nothing").code, 2);
 }
