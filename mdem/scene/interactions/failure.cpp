@@ -1,7 +1,7 @@
 // [failure] tubes that break: a bond between two elements breaks for good in the first step in which the tube about
-// it is strained, or bends, beyond its limit.
+// it is strained, or bends, beyond its limit, or in which the bond itself can carry no more torque.
 //
-//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment
+//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90 degrees
 //
 // n bonds are about as long as the tube is wide, one where elements are as long as that. So heat, which strains a
 // bond the more the shorter it is, weakens a tube in short elements no more than in long ones. `from = "atoms"`
@@ -146,9 +146,15 @@ class TubeFailure : public ForceTerm {
   std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
 
  private:
+  // By a hair before BondSum::slipping, so that no run ends for a bond that breaks.
+  static bool slips(const Quaternion& from, const Quaternion& to) {
+    const Quaternion turn = from.conjugate() * to;
+    return turn.z() * turn.z() >= (1 - 1e-9) * turn.w() * turn.w();
+  }
   bool breaks(int tube, const State& state, int element) const {
     const auto i = static_cast<std::size_t>(element);
     if (broken_[i]) return false;
+    if (slips(state.orientation[i], state.orientation[i + 1])) return true;
     const TubeType& type = topology_.type_of(tube);
     const auto [first, last] = about(tube, element);
     const int bonds = last - first + 1;

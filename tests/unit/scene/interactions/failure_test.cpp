@@ -169,6 +169,35 @@ TEST(Failure, BreaksWhereATubeIsBentTooFar) {
   EXPECT_GE(broken(s), 1);
 }
 
+// Without [failure] the run ends there.
+TEST(Failure, BreaksWhereATubeIsTwistedTooFar) {
+  const auto twisted = [](const std::string& failure) {
+    return scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 6\n[bond]\nlaw = "
+        "\"harmonic\"\n[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = "
+        "{ rotation_deg = 600, rate_deg_per_ps = 20 }\n" +
+            failure + "[run]\nduration_ps = 40\n",
+        "failure.toml");
+  };
+  Simulation s = begun(twisted("[failure]\nstrain = 0.5\n"));
+  const auto largest_twist = [&s] {
+    double most = 0;
+    const State& state = s.state();
+    for (std::size_t i = 0; i + 1 < state.size(); ++i)
+      most = std::max(
+          most, std::fabs(bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]))));
+    return most;
+  };
+  double before = 0;
+  while (s.state().time < 40 && broken(s) == 0) before = largest_twist(), s.step();
+  EXPECT_EQ(broken(s), 1);
+  EXPECT_NEAR(before, 0.5 * units::pi, 0.02);
+  s.steps(100);
+  EXPECT_EQ(s.tubes_now().tubes(), 2);
+  Simulation whole = begun(twisted(""));
+  EXPECT_THROW(whole.steps(100000), NumericalError);
+}
+
 // The pressure on the tubes of the scene, whatever has become of them.
 TEST(Failure, LimitsAreThoseOfTheTubesOfTheScene) {
   Scene scene = rope();
