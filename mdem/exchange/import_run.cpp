@@ -160,7 +160,7 @@ class Import {
     checkpoint_.log = mark_of(log_);
     checkpoint_.frames = (*frames_)->mark();
     checkpoint_.log.step = checkpoint_.frames.step = reached_;
-    checkpoint_.mark = nullptr;
+    checkpoint_.snapshot = nullptr;
     checkpoint_.ends_for = StopReason::none;
     checkpoint_.limits.limits = watch_.records();
     checkpoint_.simulation = simulation.serialise();
