@@ -184,7 +184,7 @@ void run_checkpoint(const std::string& bytes) {
   static const std::string genuine = [] {
     RunCheckpoint c;
     c.simulation = "not looked into";
-    c.mark = std::make_shared<const RunCheckpoint>(c);
+    c.snapshot = std::make_shared<const RunCheckpoint>(c);
     write_checkpoint(dir, c);
     return read_file(dir.checkpoint());
   }();

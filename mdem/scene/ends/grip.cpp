@@ -277,7 +277,9 @@ GripLoad GripLoad::on_elements(std::vector<int> on, const Topology& topology, do
     std::vector<Schedule::Point> points = axes[k].points;
     for (Schedule::Point& p : points)
       if (axes[k].strain) p.value *= (end == upper_end ? free_length : -free_length) * (both ? 0.5 : 1);
-    out.schedules_[k] = Schedule(points, smooth < 0 ? 2 * sound : smooth);
+    // A corner of a motion is a jump of the speed; a load has its own corners, as in [twist].
+    const double usual = axes[k].is == Is::moved ? 2 * sound : 0;
+    out.schedules_[k] = Schedule(points, smooth < 0 ? usual : smooth);
   }
   return out;
 }
@@ -513,8 +515,8 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::boolean("spin_free", &GripLoad::spin_free, standard(), "tubes turn about their own axes in the clamp"),
        Key::boolean("tilt_free", &GripLoad::tilt_free, standard(), "tubes tilt in the clamp"),
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
-                   otherwise("10", "twice the travel of sound along the tubes"),
-                   "speeds change over this time, at most over half of the line between two points")},
+                   otherwise("10", "twice the travel of sound along the tubes for motions, 0 for loads"),
+                   "rates change over this time, at most over half of the line between two points")},
       check_grip};
   return table;
 }

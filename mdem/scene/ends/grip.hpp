@@ -38,7 +38,7 @@ class GripLoad : public Load {
   int depth = 1;                 // elements of each tube in the clamp
   std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
   bool slide_free = false, spin_free = false, tilt_free = false;
-  double smooth = -1;  // ps, of the corners of all schedules; negative: as long as sound needs to and fro
+  double smooth = -1;  // ps, of the corners of all schedules; negative: that of motions follows from the travel of sound
 
   // The grip on these elements of a scene, `depth` of each tube after one another. `free_length`: nm, to which a
   // strain refers; a grip that follows no strain needs none.
