@@ -54,6 +54,8 @@ struct ContactOptions {
 struct RunOptions {
   enum class Mode { dynamics, relax };
   Mode mode = Mode::dynamics;
+  enum class Solver { fire, newton, automatic };
+  Solver solver = Solver::fire;  // relax mode
   double time_step = 0;  // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias

@@ -112,6 +112,9 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   Scene scene = table.read(top, file);
   read_tables(top, scene);
   top.finish(belongs_to);
+  if (scene.run.mode == RunOptions::Mode::relax)
+    for (auto& drive : scene.drives)
+      if (auto held = drive->at_its_end()) drive = std::move(held);
   for (const auto& drive : scene.drives) drive->refuse(top, scene);
   check_run(top, scene);
   return scene;

@@ -1060,6 +1060,28 @@ TEST_F(Cli, RelaxationThatRunsOutOfStepsKeepsItsFilesAndCanGoOn) {
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "finished");
 }
 
+// FIRE does not come to rest under the couples of [twist]; their ramp is left out.
+TEST_F(Cli, NewtonsMethodFindsTheStateOfRestUnderTwist) {
+  const std::string rope =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+      "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 1\n[run]\nmode = \"relax\"\nsolver = ";
+  for (const char* solver : {"newton", "auto"}) {
+    spit(dir / "s.toml", rope + '"' + solver + "\"\n");
+    const Outcome o = run(std::string("run s.toml --force --out ") + solver);
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    EXPECT_NE(o.out.find("at rest: largest force "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("10 nN nm per tube by couples of fixed direction on the grips, held"), std::string::npos)
+        << o.out;
+  }
+  const auto last_twist = [&](const char* d) {
+    return ropewalk::read_log((dir / d / "log.csv").string()).back()["geometric_twist_deg"];
+  };
+  EXPECT_GT(last_twist("newton"), 10);
+  EXPECT_NEAR(last_twist("newton"), last_twist("auto"), 0.01);
+  const Outcome modes = run("modes newton");
+  EXPECT_EQ(modes.code, 0) << modes.err;
+}
+
 // Every wrong file of tests/cli/bad: exit code 2 and the one line that it expects.
 TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
   int count = 0;

@@ -554,6 +554,13 @@ DriveKind grip_drive() {
 
 SceneTable GripDrive::table() const { return grip_table(); }
 
+std::shared_ptr<const Drive> GripDrive::at_its_end() const {
+  auto out = std::make_shared<GripDrive>(*this);
+  for (GripAxis& axis : out->load.axes)
+    if (axis.is == Is::loaded) axis.points = {{0, axis.points.back().value}};
+  return out;
+}
+
 std::string GripDrive::words() const {
   constexpr std::size_t most = 12;
   if (on.all_tubes) return load.words();
