@@ -121,8 +121,8 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
       heading(kind.heading) + paragraph(kind.words) +
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
       escape_markup(column_axis(x).quantity) + "</th>";
-  std::vector<OutputColumn> columns = kind.columns;
-  for (const OutputColumn& c : limit_columns()) columns.push_back(c);
+  std::vector<OutputColumn> columns = limit_columns();
+  columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
   for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
   html += "</tr></thead><tbody>\n";
   for (const LoadTestGroup& g : groups) {
@@ -131,13 +131,14 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
     };
     html += fmt::format("<tr><th>{}</th><td>{} of {}</td>", escape_markup(g.name), followed(g), g.tests.size());
     cell(mean_at(g, x));
-    for (std::size_t k = 0; k < kind.columns.size(); ++k)
-      cell(mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; }));
     const std::vector<LimitRecord> limits = earliest_limits(g);
     const LimitRecord* first = first_limit(limits);
-    html += first ? fmt::format("<td>{}</td><td>{}</td></tr>\n", escape_markup(first->key),
-                                number_text(first->passed_at_ps))
-                  : "<td>–</td><td>–</td></tr>\n";
+    html += first
+                ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
+                : "<td>–</td><td>–</td>";
+    for (std::size_t k = 0; k < kind.columns.size(); ++k)
+      cell(mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; }));
+    html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
   const std::string svg = scatter_svg(chart_of(kind, groups, x));

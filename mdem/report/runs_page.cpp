@@ -116,20 +116,20 @@ std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
-  for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
   for (const OutputColumn& c : limit_columns()) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
+  for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
   html += "<th></th></tr></thead><tbody>\n";
   std::size_t k = 0;
   for (const RunCurve& run : runs) {
     html += fmt::format("<tr><td>{}</td><th>{}</th><td>{}</td>", ++k, escape_markup(run.name), run.log.size());
-    for (const std::string& c : columns) {
-      const double value = run.log.back()[c], error = run.error.empty() ? nan : run.error.back()[c];
-      html += "<td>" + (std::isfinite(value) ? measured_text(value, error) : std::string("–")) + "</td>";
-    }
     const LimitRecord* first = first_limit(run.limits);
     html += first
                 ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
                 : "<td>–</td><td>–</td>";
+    for (const std::string& c : columns) {
+      const double value = run.log.back()[c], error = run.error.empty() ? nan : run.error.back()[c];
+      html += "<td>" + (std::isfinite(value) ? measured_text(value, error) : std::string("–")) + "</td>";
+    }
     html += "<td class=\"soft\">" + escape_markup(run.remark) + "</td></tr>\n";
   }
   return html + "</tbody></table></div>\n";
