@@ -24,6 +24,7 @@ struct Verbs {
   ShowArguments show;
   CheckShippedArguments check_shipped;
   FrictionArguments friction;
+  PullArguments pull;
   int code = 0;
 };
 
@@ -116,6 +117,15 @@ void add_verbs(CLI::App& app, Verbs& v) {
   friction->add_flag("--quiet", f.quiet, "No progress lines");
   friction->callback([&v] { v.code = friction_command(v.friction); });
 
+  CLI::App* pull = app.add_subcommand(
+      "pull", "Add to a set what its tube bears until it gives way, by LAMMPS: for [failure] (some seconds)");
+  pull->add_option("set", v.pull.set, "Parameter set with [bond.anharmonic]: a file, or the name of a shipped one")
+      ->required();
+  pull->add_option("--out", v.pull.out, "Parameter file; its tables lie beside it [default: NAME.toml]");
+  pull->add_option("--keep", v.pull.keep, "Keep LAMMPS's inputs and logs in this new directory");
+  pull->add_flag("--force", v.pull.force, "Replace existing files, as to change a set where it lies");
+  pull->callback([&v] { v.code = pull_command(v.pull); });
+
   CLI::App* universal = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");
   add_law(*universal, v.universal.lj, v.universal.lj_cutoff);
   universal->add_option("--out", v.universal.out, "File [default: the shipped one]");
@@ -143,13 +153,16 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Verbs verbs;
   verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command =
-      command_line(argc, argv);
+      verbs.pull.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
   add_describe(app, [] {
     const std::vector<std::string> sets = shipped_sets();
-    return Description{
-        "ropewalk-calibrate", version, "", nlohmann::ordered_json::object(), {{"show", sets}, {"friction", sets}}};
+    return Description{"ropewalk-calibrate",
+                       version,
+                       "",
+                       nlohmann::ordered_json::object(),
+                       {{"show", sets}, {"friction", sets}, {"pull", sets}}};
   });
   catch_interrupts();
   try {

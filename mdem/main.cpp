@@ -15,6 +15,7 @@
 
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
+#include "commands/limit_help.hpp"
 #include "commands/siblings.hpp"
 #include "io/data_files.hpp"
 #include "io/failure.hpp"
@@ -73,7 +74,7 @@ struct Verbs {
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
-  std::string check_scene, help_topic;
+  std::string check_scene, help_topic, cited_run;
   int code = 0;
 };
 
@@ -125,8 +126,11 @@ void add_new(CLI::App& app, Verbs& v) {
 }
 
 void add_check(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand("check", "Read a scene, say what it would do and how long it would take");
-  c->add_option("scene", v.check_scene, "Scene file (TOML)")->required();
+  CLI::App* c = app.add_subcommand(
+      "check",
+      "Read a scene, say what it would do and how long it would take; or judge a run by the [[expect]] "
+      "tables of its scene");
+  c->add_option("scene", v.check_scene, "Scene file (TOML), or the directory of a finished run")->required();
   c->callback([&v] { v.code = check_command(v.check_scene); });
 }
 
@@ -165,6 +169,12 @@ void add_errors(CLI::App& app, Verbs& v) {
   });
 }
 
+void add_cite(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand("cite", "Name what a paper that shows a run should cite, as BibTeX");
+  c->add_option("dir", v.cited_run, "Directory of the run")->required();
+  c->callback([&v] { v.code = cite_command(v.cited_run); });
+}
+
 void add_compare(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("compare", "Side by side: runs and campaigns, or parameter sets");
   c->add_option("names", v.compare.names,
@@ -173,12 +183,18 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--page", v.compare.page,
                 "Page with all curves (HTML) [default: compare.html for runs, none for sets]");
   c->add_option("--x", v.compare.x,
-                "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg]");
+                "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg, with "
+                "--torsion rotation_deg]");
   c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_flag("--tensile", v.compare.tensile,
               "Runs that pull a rope: strength, modulus, toughness and breaks, over what --x was before the pull");
+  c->add_flag("--torsion", v.compare.torsion,
+              "Runs that twist a rope: largest torque, its angle, first break and stored energy, over what --x was "
+              "at that "
+              "torque")
+      ->excludes("--tensile");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
   c->add_option("--csv", v.compare.csv, "Runs: write the curves, and their standard errors, to this file instead");
@@ -526,20 +542,23 @@ std::vector<std::string> listed_verbs(const CLI::App& app) {
 // Help on the keys of a scene. verb_before_help() gives the help of verbs.
 void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
-  c->add_option(
-      "topic", v.help_topic,
-      "A verb; scene; a table of a scene, as links or [run]; or one of its keys [default: the list of verbs]");
+  c->add_option("topic", v.help_topic,
+                "A verb; scene; a table of a scene, as links or [run]; one of its keys; or a limit that a run has "
+                "passed [default: "
+                "the list of verbs]");
   c->callback([&app, &v] {
     if (v.help_topic == "scene") {
       std::puts(scene_key_help().c_str());
       return;
     }
-    if (const std::string keys = scene_key_help(v.help_topic); !keys.empty()) {
-      std::fputs(keys.c_str(), stdout);
+    const std::string keys = scene_key_help(v.help_topic), limit = limit_help(v.help_topic);
+    if (!keys.empty() || !limit.empty()) {
+      std::fputs((keys + (keys.empty() || limit.empty() ? "" : "\n") + limit).c_str(), stdout);
       return;
     }
     std::vector<std::string> topics = listed_verbs(app);
     topics.emplace_back("scene");
+    for (const std::string& limit : limit_headings()) topics.push_back(limit);
     for (const SceneTable& t : scene_tables()) {
       if (!t.name.empty()) topics.push_back(t.name);
       for (const SceneKey& k : t.keys) topics.push_back(k.key);
@@ -602,7 +621,8 @@ int main(int argc, char** argv) {
       "ropewalk twists carbon-nanotube ropes by the mesoscopic distinct element method.\n"
       "Units: nm, ps, eV; moments nN nm. Every key of a scene carries its unit: ropewalk help scene.\n"
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
-      "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 128 + signal.");
+      "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 8 done but not as "
+      "[[expect]] says, 128 + signal.");
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);
@@ -624,6 +644,7 @@ int main(int argc, char** argv) {
   add_rest(app, verbs);
   add_modes(app, verbs);
   add_gather(app, verbs);
+  add_cite(app, verbs);
   add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);

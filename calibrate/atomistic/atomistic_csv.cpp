@@ -14,8 +14,8 @@ namespace {
 constexpr const char* format_line = "# ropewalk-atomistic-1";
 constexpr std::array<OutputColumn, 9> table = {{
     {"kind", "",
-     "stretch-twist, bend-short, bend-long; these with wide- before them, up to the limits of the tube; or the "
-     "name of an envelope run"},
+     "stretch-twist, bend-short, bend-long; these with wide- before them, up to the limits of the tube; pull; or "
+     "the name of an envelope run"},
     {"length_nm", "nm", "length of the relaxed straight cell, or of the bent part"},
     {"strain", "", "strain against the relaxed tube"},
     {"twist_rad_per_nm", "rad/nm", "twist against the rolled sheet"},

@@ -24,7 +24,7 @@ struct Known {
   const char* style;  // with its arguments
   const char* file;
   const char* element;
-  double cutoff;  // nm
+  double cutoff, inner;  // nm
   const char* reference;
   const char* doi;
 };
@@ -32,16 +32,16 @@ struct Known {
 // The cutoffs of AIREBO's bonded part are REBO's: without Lennard-Jones and torsion it is REBO with other
 // constants.
 constexpr std::array<Known, 4> known_potentials{
-    {{"tersoff", "tersoff", "BNC.tersoff", "C", 0.21,
+    {{"tersoff", "tersoff", "BNC.tersoff", "C", 0.21, 0.18,
       "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010); file of A. Kinaci et al., Phys. Rev. B 86, 115410 "
       "(2012)",
       "10.1103/PhysRevB.81.205441"},
-     {"airebo", "airebo 3.0 0 0", "CH.airebo", "C", 0.20,
+     {"airebo", "airebo 3.0 0 0", "CH.airebo", "C", 0.20, 0.17,
       "S. J. Stuart, A. B. Tutein, J. A. Harrison, J. Chem. Phys. 112, 6472 (2000); bonded part alone",
       "10.1063/1.481208"},
-     {"rebo", "rebo", "CH.rebo", "C", 0.20, "D. W. Brenner et al., J. Phys.: Condens. Matter 14, 783 (2002)",
+     {"rebo", "rebo", "CH.rebo", "C", 0.20, 0.17, "D. W. Brenner et al., J. Phys.: Condens. Matter 14, 783 (2002)",
       "10.1088/0953-8984/14/4/312"},
-     {"lcbop", "lcbop", "C.lcbop", "C", 0.60, "J. H. Los, A. Fasolino, Phys. Rev. B 68, 024107 (2003)",
+     {"lcbop", "lcbop", "C.lcbop", "C", 0.60, 0.17, "J. H. Los, A. Fasolino, Phys. Rev. B 68, 024107 (2003)",
       "10.1103/PhysRevB.68.024107"}}};
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -149,6 +149,7 @@ Potential find_potential(const std::string& name) {
   potential.reference = known->reference;
   potential.doi = known->doi;
   potential.cutoff = known->cutoff;
+  potential.inner = known->inner;
   return potential;
 }
 

@@ -14,6 +14,7 @@ struct Potential {
   std::string file_hash;              // xxh64
   std::string reference, doi;
   double cutoff = 0;  // nm, largest interaction distance: a bound for cell sizes
+  double inner = 0;   // nm, length from which bonds are cut off, and their force rises falsely; 0: not known
 };
 
 // Throws InputError for an unknown name (with the nearest known one) and for a potential file that is missing.

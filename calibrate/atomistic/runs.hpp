@@ -61,6 +61,14 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
 std::vector<AtomisticRow> stretch_twist_rows(const std::vector<CellResult>& cells, const RelaxedTube& tube,
                                              const CellGrid& grid);
 
+// A cell that is pulled in steps of strain, as far as its force rises and no bond is longer than Potential::inner.
+struct PulledCell {
+  std::vector<AtomisticRow> rows;  // "pull"
+  std::string ended_by;            // "the force falls"
+};
+inline constexpr double pull_step = 0.005;
+PulledCell pull_cell(RunContext& run, const RelaxedTube& tube);
+
 // Longer cells (nm) of one twist each, minimised with a little noise, so that the wall may collapse; rows
 // "collapse-twist". `shears`: radius times twist.
 std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube,
@@ -81,6 +89,11 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
                            std::vector<AtomisticRow>& rows);
 
 // Shared pieces of the inputs.
+// The start of an input that minimises one uniform cell; v_wide scales v_new_x and v_new_y.
+std::string uniform_cell_commands(const Potential& potential, const std::string& data);
+// The period of a cell with no twist, or with very little where the period of the tube is long.
+LatticeVector untwisted_cell(Chirality c, double min_length);
+std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape);
 std::string header_commands(const std::string& boundary, double skin);
 // The atoms of each tube (nm) as a type of their own, in a box about the axis.
 std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,

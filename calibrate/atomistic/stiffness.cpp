@@ -183,6 +183,21 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
     add_rows(stretch_twist_rows(stretch_twist_cells(run, tube, wide), tube, wide));
     add_rows(bend_rows(run, tube, wide_bends(tube.shape.radius, kink)));
     timed(out.fit_seconds, [&] { fit_anharmonic(out.rows, c, out); });
+    if (!out.anharmonic.terms.empty()) {
+      tell("pulling until the tube gives way");
+      const PulledCell pulled = pull_cell(run, tube);
+      add_rows(pulled.rows);
+      out.pull = fit_pull(out.rows, out.anharmonic.law(tube.shape.radius, out.coupling.value), out.EA.value,
+                          out.GJ.value, out.natural_twist.value);
+      out.pull.ended_by = pulled.ended_by;
+      if (!(out.pull.end > 0))
+        out.warnings.push_back("pulled, the tube gives way at the window of its bond: its strength is not known");
+      else
+        out.fit_report += fmt::format(
+            "pull: up to a strain of {:.3g}, where {}; {:.4g} nN, law within {:.1e} of an "
+            "energy\n",
+            out.pull.end, pulled.ended_by, out.pull.force.back().value * units::eV_in_nN_nm, out.pull.error);
+    }
     if (options.envelope && !out.anharmonic.terms.empty()) {
       tell("twisting beyond the collapse (minutes)");
       std::vector<double> shears;

@@ -19,6 +19,7 @@
 // dominates, since the spline has a knot at 120 degrees, the angle of the unstrained sheet.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -96,6 +97,16 @@ struct AnharmonicFit {
   Anharmonic law(double radius, double coupling) const;
 };
 
+// The force of a tube that is pulled, at equal steps of strain from the edge of the window to the end.
+struct PullFit {
+  double end = 0;                                // strain; 0: not measured
+  std::array<Measured, PULL_STEPS + 1> force{};  // eV/nm, of the atoms, without twist
+  std::string ended_by;                          // "the force falls"
+  double error = 0;                              // largest relative error of the law against energies of the pull
+
+  Pull law() const;
+};
+
 struct Stiffness {
   Measured EA;             // eV/nm
   Measured EI;             // eV nm
@@ -115,6 +126,7 @@ struct Stiffness {
   Measured twist_quartic;  // eV nm^3, of s^4
   Measured bend_quartic;   // eV nm^3, of k^4
   AnharmonicFit anharmonic;
+  PullFit pull;
   double surface_density() const;  // atoms per nm^2 of the relaxed shell
   Envelope envelope;
   std::vector<AtomisticRow> rows;
@@ -150,6 +162,11 @@ void fit_bend(std::vector<AtomisticRow>& rows, Stiffness& out);
 // The terms beyond Hooke's law, from the rows of the wide windows; EA, GJ, EI, the coupling and the natural twist
 // in `out` are held. It fills the residuals of its rows.
 void fit_anharmonic(std::vector<AtomisticRow>& rows, Chirality c, Stiffness& out);
+
+// The forces of stretch beyond the window of `law`, from rows "pull", whose residuals it fills. EA (eV/nm), GJ (eV
+// nm), natural_twist (rad/nm): of the harmonic bond. Empty where the rows do not reach beyond the window.
+PullFit fit_pull(std::vector<AtomisticRow>& rows, const Anharmonic& law, double EA, double GJ,
+                 double natural_twist);
 
 // The shear at which the torque stops rising, from rows "collapse-twist", as that of an endless tube into the
 // envelope.

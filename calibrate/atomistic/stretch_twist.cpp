@@ -21,29 +21,8 @@ constexpr const char* minimiser =
     "min_style cg\n"
     "min_modify dmax 0.02 line quadratic\n";
 
-std::string uniform_cell_commands(const Potential& potential, const std::string& data) {
-  std::string text = header_commands("s s p", skin) + fmt::format("read_data {}\n", data);
-  for (const std::string& command : potential.commands) text += command + "\n";
-  text += minimiser;
-  text +=
-      "variable rho atom sqrt(x*x+y*y)\n"
-      "variable new_x atom x*v_wide\n"
-      "variable new_y atom y*v_wide\n"
-      "compute rho all reduce ave v_rho\n"
-      "thermo_style custom step pe fnorm fmax c_rho lz\n"
-      "thermo 50\n"
-      "thermo_modify flush yes lost error norm no format float %.12g\n";
-  return text;
-}
-
 std::string report(const std::string& name, const char* values) {
   return fmt::format("print \"{}\" append {}.dat screen no\n", values, name);
-}
-
-std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape) {
-  std::vector<Vector3> atoms;
-  for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(place(c, site, shape));
-  return atoms;
 }
 
 // The shortest cell whose shear is close to the wanted one; otherwise the closest cell.
@@ -67,15 +46,6 @@ LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_
     if (!best || cost(v) < cost(*best)) best = &v;
   if (!best) throw std::invalid_argument("no lattice vector serves as the period of this tube");
   return *best;
-}
-
-LatticeVector untwisted_cell(Chirality c, double min_length) {
-  const LatticeVector t = translation_vector(c);
-  const double length = translational_period(c);
-  const int copies = std::max(1, static_cast<int>(std::ceil(min_length / length - 1e-9)));
-  // A tube with a long period gets a cell with a very small twist instead.
-  if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length);
-  return {copies * t.p, copies * t.q};
 }
 
 // Atoms as LAMMPS dumped them, in order of their ids.
@@ -131,6 +101,36 @@ constexpr double shortest_cell = 1.0;  // nm; three times any bonded cutoff, so 
 constexpr double collapse_cell = 9, longest_collapse_cell = 24;  // nm
 
 }  // namespace
+
+std::string uniform_cell_commands(const Potential& potential, const std::string& data) {
+  std::string text = header_commands("s s p", skin) + fmt::format("read_data {}\n", data);
+  for (const std::string& command : potential.commands) text += command + "\n";
+  text += minimiser;
+  text +=
+      "variable rho atom sqrt(x*x+y*y)\n"
+      "variable new_x atom x*v_wide\n"
+      "variable new_y atom y*v_wide\n"
+      "compute rho all reduce ave v_rho\n"
+      "thermo_style custom step pe fnorm fmax c_rho lz\n"
+      "thermo 50\n"
+      "thermo_modify flush yes lost error norm no format float %.12g\n";
+  return text;
+}
+
+std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape) {
+  std::vector<Vector3> atoms;
+  for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(place(c, site, shape));
+  return atoms;
+}
+
+LatticeVector untwisted_cell(Chirality c, double min_length) {
+  const LatticeVector t = translation_vector(c);
+  const double length = translational_period(c);
+  const int copies = std::max(1, static_cast<int>(std::ceil(min_length / length - 1e-9)));
+  // A tube with a long period gets a cell with a very small twist instead.
+  if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length);
+  return {copies * t.p, copies * t.q};
+}
 
 RelaxedTube relax_tube(RunContext& run) {
   const Chirality c = run.c;

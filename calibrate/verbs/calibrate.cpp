@@ -189,8 +189,14 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
   try {
     parameters_of_text(text, path);
   } catch (const InputError& e) {
-    if (e.place().key.rfind("bond.anharmonic", 0) != 0) return;
+    const auto lies_in = [&](const char* table) { return e.place().key.rfind(table, 0) == 0; };
+    if (lies_in("bond.pull")) {
+      c.stiffness.pull = {};
+      c.warnings.push_back(std::string("the pull is left out: ") + e.what());
+    }
+    if (!lies_in("bond.anharmonic")) return;
     c.stiffness.anharmonic.terms.clear();
+    c.stiffness.pull = {};
     c.warnings.push_back(std::string("the bond beyond Hooke's law is left out: ") + e.what());
   }
 }

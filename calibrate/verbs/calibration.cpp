@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "atomistic/lattice.hpp"
+#include "atomistic/runs.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"
@@ -347,6 +348,7 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
   add_tube(c, q);
   add_bond(c, q);
   add_anharmonic(c, q);
+  if (const PullFit& pull = c.stiffness.pull; pull.end > 0) put_pull(set, pull);
   add_line(c, q);
   if (c.paper.fit.usable()) add_paper(c, q);
   add_atomistic(c, q);
@@ -381,6 +383,20 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
   auto& p = set.provenance;
   p.erase(std::remove_if(p.begin(), p.end(), [](const auto& entry) { return entry.second.empty(); }), p.end());
   return set;
+}
+
+void put_pull(ParameterSet& set, const PullFit& pull) {
+  const std::string note = fmt::format("beyond it {}; {:.4g} nN, law within {:.1e} of the energy", pull.ended_by,
+                                       pull.force.back().value * units::eV_in_nN_nm, pull.error);
+  auto& all = set.quantities;
+  const auto begins = [](const Quantity& q, const char* with) { return q.key.rfind(with, 0) == 0; };
+  all.erase(std::remove_if(all.begin(), all.end(), [&](const Quantity& q) { return begins(q, "bond.pull."); }),
+            all.end());
+  auto at = all.end();
+  while (at != all.begin() && !begins(*(at - 1), "bond.anharmonic.")) --at;
+  all.insert(at, {"bond.pull.end", pull.end, "1", 0.5 * pull_step, "calibrated", "", note});
+  set.pull = pull.law();
+  for (std::size_t k = 0; k < pull.force.size(); ++k) set.pull_errors[k] = pull.force[k].standard_error;
 }
 
 std::string parameter_file_comment(const Calibration& c) {

@@ -49,6 +49,8 @@ std::string stiffness_csv(const Calibration& calibration);
 // The set; `stiffness_file` and `contact_file` are the names of its tables, recorded with their hashes.
 ParameterSet parameter_set(const Calibration& calibration, const std::string& stiffness_file,
                            const std::string& contact_file);
+// Puts a pull behind the anharmonic terms of a set, in place of an earlier one.
+void put_pull(ParameterSet& set, const PullFit& pull);
 std::string parameter_file_comment(const Calibration& calibration);
 
 // The main numbers of the contact.

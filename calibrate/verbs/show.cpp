@@ -114,7 +114,7 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
   const std::string path = companion(set, "stiffness");
   if (path.empty()) return paragraph("The set names no table of energies, or it does not lie beside the set.");
   const std::vector<AtomisticRow> rows = read_atomistic_csv(path);
-  Points stretch, twist, bend;
+  Points stretch, twist, bend, pull;
   const Quantity* twisted = find_quantity(set, "atomistic.natural_twist");
   const double natural = twisted ? twisted->value : 0;
   for (const AtomisticRow& r : rows) {
@@ -133,6 +133,16 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
           bend.add(r.curvature, difference, difference - (r.residual - other.residual) / length);
         }
   }
+  // Mean forces between two rows.
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const AtomisticRow &a = rows[k - 1], &b = rows[k];
+    if (a.kind != "pull" || b.kind != "pull") continue;
+    const double over = units::eV_in_nN_nm / (b.length * (b.strain - a.strain)),
+                 force = (b.energy - a.energy) * over;
+    pull.add(50 * (a.strain + b.strain), force, force - (b.residual - a.residual) * over);
+  }
+  pull.sort();
+  pull.curve_x = pull.x, pull.curve_y = pull.fit;
   for (Points* p : {&stretch, &twist, &bend}) {
     p->sort();
     p->draw_polynomial();
@@ -145,6 +155,9 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
                           "Relaxed periodic cells near no strain.");
   html += pair_of_figures(figures, "Energy against curvature", {"curvature", "1/nm"}, energy, bend,
                           "Difference of two bent tubes over the difference of their lengths: without their ends.");
+  html += pair_of_figures(
+      figures, "Force against strain", {"strain", "%"}, {"force", "nN"}, pull,
+      "One cell, pulled until its force falls or the potential cuts a bond off; and the bond of the set.");
   return html;
 }
 

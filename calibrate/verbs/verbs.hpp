@@ -73,6 +73,15 @@ struct FrictionArguments {
 };
 int friction_command(const FrictionArguments& arguments);
 
+struct PullArguments {
+  std::string set;
+  std::string out;   // empty: NAME.toml in the current directory
+  std::string keep;  // empty: LAMMPS's files are removed at the end
+  bool force = false;
+  std::string command;
+};
+int pull_command(const PullArguments& arguments);
+
 // --- Shared by the verbs ---
 
 // On Ctrl-C and TERM the LAMMPS child is ended first and temporary files are removed. interrupted_by() is the

@@ -180,6 +180,7 @@ The state at that moment is in `failed-state.csv`. The message begins with the s
 [scene](scene.md) changes or switches off each.
 
 """
+    text += "[Limits](../limits.md) says of each what is wrong, whether it is real and what to change.\n\n"
     text += table(["limit", "what the message says", "why it matters", "what to do"],
                   [[code(k["key"]), cell(k["what"]) + " ...", cell(k["consequence"]), cell(k["remedy"])]
                    for k in programs[0]["limits"]])

@@ -22,9 +22,9 @@ repository = Path(__file__).resolve().parents[2]
 beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.md", "validate/README.md",
                "mdem/lammps/README.md", "data/**/README.md"]
 contents = [
-    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/phase-diagram", "tutorials/cluster", "guide", "gallery"]),
+    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/twist-to-failure", "tutorials/phase-diagram", "tutorials/cluster", "guide", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/plan", "how-to/campaign", "how-to/*"]),
-    ("Reference", ["reference/commands", "reference/scene", "outputs", "faults", "reference/messages",
+    ("Reference", ["reference/commands", "reference/scene", "outputs", "limits", "faults", "reference/messages",
                    "reference/library", "glossary"]),
     ("The model", ["theory", "calibrate/README", "validate/README", "mdem/lammps/README", "performance"]),
     ("Results", ["data/scenes/README", "data/**"]),

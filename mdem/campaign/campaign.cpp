@@ -9,14 +9,15 @@
 
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
-#include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "observe/time_mean.hpp"
 #include "plan/scene_edit.hpp"
 #include "report/runs_page.hpp"
+#include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
+#include "run/results.hpp"
 
 namespace ropewalk {
 namespace {
@@ -78,10 +79,6 @@ std::string mean_cells(const std::vector<LogRow>& log, double mean_ps, const std
     short_of->push_back(fmt::format("{}: {:.3g} ps are too short for an error of {}{}", point, mean_ps, names,
                                     needed > 0 ? fmt::format("; about {:.2g} ps would do", needed) : ""));
   return text;
-}
-
-std::string limits_of(const RunDirectory& dir) {
-  return fs::exists(dir.limits()) ? passed_words(read_limits(dir.limits()).limits) : "";
 }
 
 // Killed before its sweep.toml was written.
@@ -204,7 +201,7 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
   const std::vector<std::size_t> columns = columns_of(options);
   std::string text = "point";
   for (const std::string& key : sweep.keys()) text += "," + csv_cell(key);
-  text += ",status";
+  text += ",status," + column_names(limit_columns());
   const bool means = options.mean_ps > 0 && !options.series;
   std::size_t cells = 0;
   for (const std::size_t k : columns) {
@@ -212,12 +209,15 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     if (means && has_mean(k)) text += fmt::format(",{}_error", observables()[k].name), ++cells;
     ++cells;
   }
+  const bool with_results = options.columns.empty() && !options.series;
+  if (with_results) text += "," + column_names(result_columns());
   text += options.series ? "\n" : ",limits_passed\n";
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
     std::string begin = csv_cell(p.name);
     for (const std::string& value : p.values) begin += "," + csv_cell(without_quotes(value));
-    begin += "," + progress_of(run).status;
+    const std::vector<LimitRecord> limits = limits_of(run);
+    begin += "," + progress_of(run).status + "," + limit_cells(limits);
     const std::vector<LogRow> log = fs::exists(run.log()) ? read_log(run.log()) : std::vector<LogRow>();
     if (options.series) {
       for (const LogRow& row : log) text += begin + cells_of(row, columns) + "\n";
@@ -233,7 +233,10 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     else
       text += means ? mean_cells(log, options.mean_ps, columns, p.name, options.short_of)
                     : cells_of(log.back(), columns);
-    text += "," + csv_cell(limits_of(run)) + "\n";
+    if (with_results)
+      text += "," + (log.empty() ? std::string(result_columns().size() - 1, ',')
+                                 : result_cells(run_results(log, limits, tube_breaks(run.events()))));
+    text += "," + csv_cell(passed_words(limits)) + "\n";
   }
   return text;
 }

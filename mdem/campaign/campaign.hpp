@@ -58,11 +58,12 @@ struct GatherOptions {
   // row.
   double mean_ps = 0;
   bool series = false;               // every row of every log instead
-  std::vector<std::string> columns;  // of the log; empty: all
+  std::vector<std::string> columns;  // of the log; empty: all, and result_columns()
   // Gets a sentence for each point whose means have no error; null: nobody asks.
   std::vector<std::string>* short_of = nullptr;
 };
-// One line per point: its name, the values of the keys that vary, how it ended, the observables, the limits passed.
+// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the observables, what
+// came of it, the limits passed.
 // A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);

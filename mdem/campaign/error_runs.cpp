@@ -85,6 +85,11 @@ class InputsOf {
                            std::move(paths),
                            std::move(log_path)});
   }
+  // Whether tubes may be stretched beyond the window of [bond.anharmonic].
+  bool breaks() const {
+    return std::any_of(scene_.drives.begin(), scene_.drives.end(),
+                       [](const auto& drive) { return drive->table().name == "failure"; });
+  }
   static double step_of(double sigma) { return std::min(largest_step, std::max(least_step, sigma)); }
 
   // The stiffnesses and the contact energy; terms beyond Hooke's law one by one, where they act.
@@ -98,6 +103,9 @@ class InputsOf {
       std::vector<std::string> paths;
       for (const std::string& key : keys)
         if (find_quantity(set, key)) paths.push_back(key + ".value");
+      // The force of the pull goes on from that of EA.
+      for (std::size_t row = 0; name == "EA" && set.pull && row < set.pull->force.size(); ++row)
+        paths.push_back(fmt::format("bond.pull.force.values.{}", row));
       add(name + of, folder + name, sigma, step_of(sigma), correlated, Of::set, k, paths);
     };
     std::string none;
@@ -108,6 +116,8 @@ class InputsOf {
       const std::string name = n.key.substr(n.key.rfind('.') + 1);
       if (in("bond.anharmonic.")) {
         if (scene_.bond.anharmonic) varied(name, sigma, "", {n.key});
+      } else if (in("bond.pull.")) {
+        if (breaks()) varied("pull_" + name, sigma, "", {n.key});
       } else if (in("bond.")) {
         if (!n.standard_error)
           none += (none.empty() ? "" : ", ") + name;

@@ -13,6 +13,7 @@
 #include "report/log_figures.hpp"
 #include "report/page.hpp"
 #include "report/scatter.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace ropewalk {
 namespace {
@@ -80,12 +81,26 @@ std::string law_words(const Series& s) {
                                     : fmt::format("{:.2f}, of two points alone", law->exponent));
 }
 
-// In words where the last part of the key is an observable too.
+// In words: those of an observable of this name, or those of the key, without its unit.
 ChartAxis axis_of_key(const std::string& key) {
   const std::string leaf = leaf_of(key);
-  const bool known =
-      std::any_of(observables().begin(), observables().end(), [&](const Observable& o) { return o.name == leaf; });
-  return known ? column_axis(leaf) : ChartAxis{leaf, "", false};
+  for (const Observable& o : observables())
+    if (o.name == leaf) return column_axis(leaf);
+  for (const SceneKey& k : scene_keys()) {
+    if (k.key != leaf) continue;
+    std::string suffix = k.unit, quantity = leaf;
+    std::replace(suffix.begin(), suffix.end(), ' ', '_');
+    const std::size_t at = suffix.empty() ? std::string::npos : leaf.rfind("_" + suffix);
+    if (at != std::string::npos && at + 1 + suffix.size() == leaf.size()) quantity = leaf.substr(0, at);
+    std::replace(quantity.begin(), quantity.end(), '_', ' ');
+    return {quantity, at == std::string::npos ? "" : k.unit, false};
+  }
+  return {leaf, "", false};
+}
+
+std::string title_of(const std::string& key) {
+  const ChartAxis axis = axis_of_key(key);
+  return "Critical " + axis.quantity + (axis.unit.empty() ? "" : ", " + axis.unit);
 }
 
 ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vector<const PhasePoint*>& points) {
@@ -120,7 +135,7 @@ ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vec
   };
   add("by bisection", by_bisection(points), false);
   add("theory, in this time", by_theory(points, &PhasePoint::kinetic_theory), true);
-  add("theory, for ever", by_theory(points, &PhasePoint::static_theory), true);
+  add("theory, infinite time", by_theory(points, &PhasePoint::static_theory), true);
   return scatter;
 }
 
@@ -151,10 +166,11 @@ std::string trials_csv(const Sweep& sweep, const std::vector<PhasePoint>& points
   for (const PhasePoint& p : points)
     for (std::size_t s = 0; s < p.seeds.size(); ++s)
       for (const Trial& t : p.seeds[s].trials)
-        text += values(p) + fmt::format("{},{},{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
-                                        cell(t.passed || t.cut_short ? t.time : nan), cell(t.rate.value_or(nan)),
-                                        cell(t.error.value_or(nan)), cell(t.turn ? *t.turn / units::degree : nan),
-                                        t.shape, t.scene_hash);
+        text +=
+            values(p) + fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", s + 1, cell(t.value), t.passed ? 1 : 0,
+                                    cell(t.passed || t.cut_short ? t.time : nan), cell(t.rate.value_or(nan)),
+                                    cell(t.error.value_or(nan)), cell(t.turn ? *t.turn / units::degree : nan),
+                                    t.shape, t.first_limit, cell(t.first_limit_time.value_or(nan)), t.scene_hash);
   return text;
 }
 
@@ -164,13 +180,15 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   Figures figures;
   std::string html = page_head("Thresholds") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: critical values</p>\n<h1>" +
-                     escape_markup(q.key) + "</h1>\n";
-  html += paragraph(escape_markup(fmt::format(
-      "{} within the time of the scene, narrowed to {:g} % of the value. Errors are standard errors over seeds and "
-      "brackets.",
-      q.shape ? fmt::format("Where the rope becomes a {},", name_of(*q.shape))
-              : fmt::format("Where {} passes {:g}", q.column, q.above),
-      100 * q.accuracy)));
+                     escape_markup(title_of(q.key)) + "</h1>\n";
+  html +=
+      paragraph(escape_markup(fmt::format("The critical {}: {} within the time of the scene, narrowed to {:g} % of "
+                                          "the value. Errors are standard errors over seeds and "
+                                          "brackets.",
+                                          q.key,
+                                          q.shape ? fmt::format("where the rope becomes a {},", name_of(*q.shape))
+                                                  : fmt::format("where {} passes {:g}", q.column, q.above),
+                                          100 * q.accuracy)));
   const bool theory = std::any_of(points.begin(), points.end(),
                                   [](const PhasePoint& p) { return std::isfinite(p.static_theory()); });
   html +=
@@ -178,9 +196,10 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
       "nm</th><th>length/radius</th><th>by bisection</th>";
   if (theory)
     html +=
-        "<th>theory, in this time</th><th>off it by</th><th>its turns</th><th>for "
-        "ever</th><th>winding</th><th>rates of runs over "
-        "theory</th><th>glued tubes</th>";
+        "<th>theory, in this time</th><th>deviation from theory</th><th>turns of the helix</th><th>theory, "
+        "infinite "
+        "waiting time</th><th>winding</th><th>measured growth rate / theory (number of runs)</th><th>glued "
+        "tubes</th>";
   html += "</tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
     const auto number = [](double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); };
@@ -195,7 +214,7 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
       html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
                           number(p.kinetic_theory()), off_theory(p), number(p.theory_windings()),
                           number(p.static_theory()), number(p.winding()),
-                          p.rates() > 0 ? fmt::format("{:.2f}, of {}", p.rate_over_theory(), p.rates()) : "–",
+                          p.rates() > 0 ? fmt::format("{:.2f} ({})", p.rate_over_theory(), p.rates()) : "–",
                           number(p.glued_theory()));
     html += "</tr>\n";
   }
@@ -209,7 +228,8 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "the "
         "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
         "rope "
-        "that stays packed. Its turns are those of the helix that grows fastest there. Glued tubes would need EI + "
+        "that stays packed. The turns of the helix are those of the one that grows fastest there. Glued tubes "
+        "would need EI + "
         "EA<rho^2>/2 in place of EI."));
   for (const auto& [name, some] : diagrams_of(sweep, points)) {
     const std::string svg = scatter_svg(diagram(sweep, name, some));

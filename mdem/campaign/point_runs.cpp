@@ -48,6 +48,7 @@ int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLim
   RunSettings asked;
   asked.until_ps = until_ps;
   asked.on_limit = on_limit;
+  asked.may_refine = false;
   return tell_end(go_through(begin_run(scene, dir, asked, listener)));
 }
 
@@ -58,6 +59,7 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, 
     ResumeSettings asked;
     asked.until_ps = until_ps;
     asked.on_limit = on_limit;
+    asked.may_refine = false;
     return tell_end(go_through(resume_run(dir, asked, terminal)));
   }
   remove_hardly_begun(dir);

@@ -8,8 +8,11 @@
 #include <stdexcept>
 
 #include "model/error.hpp"
+#include "report/tensile.hpp"
+#include "report/torsion.hpp"
 #include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
+#include "run/results.hpp"
 
 namespace ropewalk {
 namespace {
@@ -39,12 +42,27 @@ std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   return groups;
 }
 
+// Of the run that passed a limit first.
+std::vector<LimitRecord> earliest_limits(const std::vector<RunDirectory>& runs) {
+  std::vector<LimitRecord> earliest;
+  for (const RunDirectory& run : runs) {
+    std::vector<LimitRecord> limits = limits_of(run);
+    const LimitRecord *one = first_limit(limits), *other = first_limit(earliest);
+    if (one && (!other || one->passed_at_ps < other->passed_at_ps)) earliest = std::move(limits);
+  }
+  return earliest;
+}
+
 std::string remark_of(const std::vector<RunDirectory>& runs) {
+  if (runs.size() == 1) return status_words(progress_of(runs.front()).status, limits_of(runs.front()));
   std::map<std::string, int> counts;
   std::string text;
   for (const RunDirectory& run : runs) ++counts[progress_of(run).status];
   for (const auto& [status, count] : counts)
-    text += (text.empty() ? "" : ", ") + (runs.size() > 1 ? fmt::format("{} {}", count, status) : status);
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, status);
+  const auto beyond = std::count_if(runs.begin(), runs.end(),
+                                    [](const RunDirectory& run) { return !beyond_words(limits_of(run)).empty(); });
+  if (beyond > 0) text += fmt::format("; {} of them {}", beyond, beyond_words(earliest_limits(runs)));
   return text;
 }
 
@@ -76,6 +94,7 @@ RunCurve curve_of(const RunGroup& group, bool pictured) {
     throw InputError({group.runs.front().log(), 0, ""}, "has no row at the same time as the others of its kind",
                      "compare runs of one log interval");
   curve.remark = remark_of(group.runs) + (curve.remark.empty() ? "" : "; " + curve.remark);
+  curve.limits = earliest_limits(group.runs);
   if (!pictured) return curve;
   const RunDirectory& first = group.runs.front();
   Scene scene = read_run_scene(first);
@@ -85,18 +104,35 @@ RunCurve curve_of(const RunGroup& group, bool pictured) {
   return curve;
 }
 
-TensileGroup tensile_of(const RunGroup& group) {
-  TensileGroup out{group.name, group.line, {}};
+namespace {
+
+template <class Test>
+LoadTestGroup tests_of(const RunGroup& group, const char* remedy, const Test& test) {
+  LoadTestGroup out{group.name, group.line, {}};
   for (const RunDirectory& run : group.runs) {
     refuse_strange_files(run);
     try {
-      out.tests.push_back(tensile_test(read_log(run.log()), heights_of_breaks(run.events())));
+      out.tests.push_back(test(run));
+      out.tests.back().limits = limits_of(run);
     } catch (const std::invalid_argument& e) {
-      throw InputError({run.log(), 0, ""}, e.what(),
-                       "compare runs that pull a rope, see ends_strain and stress_GPa");
+      throw InputError({run.log(), 0, ""}, e.what(), remedy);
     }
   }
   return out;
+}
+
+}  // namespace
+
+LoadTestGroup tensile_of(const RunGroup& group) {
+  return tests_of(group, "compare runs that pull a rope, see ends_strain and stress_GPa",
+                  [](const RunDirectory& run) {
+                    return load_test(tensile_test(read_log(run.log()), heights_of_breaks(run.events())));
+                  });
+}
+
+LoadTestGroup torsion_of(const RunGroup& group) {
+  return tests_of(group, "compare runs that twist a rope, see rotation_deg and torque_upper_nN_nm",
+                  [](const RunDirectory& run) { return torsion_test(read_log(run.log()), results_of(run)); });
 }
 
 }  // namespace ropewalk

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "campaign/campaign.hpp"
+#include "report/load_tests.hpp"
 #include "report/runs_page.hpp"
-#include "report/tensile.hpp"
 
 namespace ropewalk {
 
@@ -26,7 +26,9 @@ std::string last_part_of(const std::string& path);
 // The mean of its logs; `pictured`: with the last frame of the first run.
 RunCurve curve_of(const RunGroup& group, bool pictured);
 
-// The tensile test of each of its runs. Throws InputError for a run without a tension.
-TensileGroup tensile_of(const RunGroup& group);
+// The tensile test, or the test in torsion, of each of its runs. Throws InputError for a run without a tension, or
+// without a torque.
+LoadTestGroup tensile_of(const RunGroup& group);
+LoadTestGroup torsion_of(const RunGroup& group);
 
 }  // namespace ropewalk

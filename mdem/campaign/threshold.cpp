@@ -15,6 +15,7 @@
 #include "model/error.hpp"
 #include "observe/growth.hpp"
 #include "plan/scene_edit.hpp"
+#include "run/results.hpp"
 #include "run/stop_watch.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/prepare.hpp"
@@ -191,6 +192,11 @@ std::vector<Trial> trials_in(const CampaignDirectory& dir, const Sweep& sweep, c
     trials.push_back(
         trial_of(read_log(run.log()), q, value, wave, whole_from(drives_at(sweep, point, value)), by_a_rule));
     trials.back().scene_hash = trial_hash(sweep, point, value);
+    const std::vector<LimitRecord> limits = limits_of(run);
+    if (const LimitRecord* first = first_limit(limits)) {
+      trials.back().first_limit = first->key;
+      trials.back().first_limit_time = first->passed_at_ps;
+    }
   }
   return trials;
 }
@@ -220,6 +226,8 @@ std::vector<OutputColumn> trial_columns() {
           {"rate_error_per_ps", "1/ps", "its standard error"},
           {"turn_deg", "deg", "rotation of the tubes about the centre line, mean under the whole load; nan: none"},
           {"shape", "", "of the rope then, or at its end: straight, spindle, helix, brush, cage, snarl"},
+          limit_columns()[0],
+          limit_columns()[1],
           {"scene_xxh64", "",
            "hash of the scene, its parameter sets and its state file, by which `--known` finds it again"}};
 }
@@ -250,8 +258,9 @@ TrialTable read_trials(const std::string& path) {
     };
   };
   const auto value = column("value"), passed = column("passed"), at_ps = column("at_ps"),
-             rate = column("rate_per_ps"), rate_error = column("rate_error_per_ps"), turn = column("turn_deg");
-  const std::size_t shape = place("shape"), hash = place("scene_xxh64"),
+             rate = column("rate_per_ps"), rate_error = column("rate_error_per_ps"), turn = column("turn_deg"),
+             limit_ps = column("first_limit_ps");
+  const std::size_t limit = place("first_limit"), shape = place("shape"), hash = place("scene_xxh64"),
                     keys = std::min(place("seed"), place("value"));
   const auto cells_of_keys = [&] {
     std::string text;
@@ -276,6 +285,8 @@ TrialTable read_trials(const std::string& path) {
     }
     if (const double turned = turn(); std::isfinite(turned)) t.turn = turned * units::degree;
     if (shape < names.size()) t.shape = csv.cells()[shape];
+    if (limit < names.size()) t.first_limit = csv.cells()[limit];
+    if (const double time = limit_ps(); std::isfinite(time)) t.first_limit_time = time;
     t.scene_hash = csv.cells()[hash];
     table.trials.push_back(std::move(t));
     table.values.push_back(cells_of_keys());

@@ -2,12 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "commands/commands.hpp"
 #include "io/clocks.hpp"
 #include "plan/forecast.hpp"
+#include "run/expectations.hpp"
 #include "run/moving_scene.hpp"
+#include "run/run_directory.hpp"
+#include "run/run_manifest.hpp"
 #include "scene/memory.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
@@ -74,9 +78,24 @@ void say_sizes(const Scene& scene, const Prepared& p) {
              10 + memory_needed(elements) / 1e6, files / 1e6, frames);
 }
 
+// A run against the [[expect]] tables of its scene.
+int check_run(const RunDirectory& run) {
+  const Scene scene = read_run_scene(run);
+  if (scene.expected.empty())
+    throw InputError({run.scene(), 0, ""}, "has no [[expect]] table, so that there is nothing to judge the run by",
+                     "write one into the scene: ropewalk help scene expect");
+  if (const Manifest m = read_manifest(run.manifest()); m.status != "finished" && m.status != "refined")
+    throw InputError({run.path, 0, ""}, fmt::format("is a run that is {}, and is judged at its end", m.status),
+                     "go on with it: ropewalk resume " + run.path);
+  const std::vector<Judgement> all = judge(scene.expected, run);
+  for (const Judgement& j : all) fmt::print("{}\n", j.words);
+  return missed(all) > 0 ? not_as_expected : 0;
+}
+
 }  // namespace
 
 int check_command(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return check_run({path});
   Scene scene = read_scene(path);
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);
@@ -94,6 +113,9 @@ int check_command(const std::string& path) {
   if (const auto helix = helix_ahead(scene, p)) fmt::print("note: {}\n", *helix);
   if (const auto turn = quasi_static(scene, p)) fmt::print("note: {}\n", words_of(*turn));
   say_limits(scene, p);
+  for (const Expectation& e : scene.expected)
+    fmt::print("expected: {} {:.6g} ± {:.2g} {}\n", e.column, e.value, e.tolerance,
+               e.at ? fmt::format("at {:.6g} ps", *e.at) : "at the end");
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
       p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,

@@ -131,11 +131,12 @@ struct CompareArguments {
   bool json = false;
   bool force = false;
   // For runs.
-  std::string x;                    // empty: time_ps; of tensile tests beta_deg
+  std::string x;                    // empty: time_ps; with --tensile beta_deg, with --torsion rotation_deg
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
   bool tensile = false;  // strength, toughness and so on of runs that pull a rope
+  bool torsion = false;  // the largest torque and what came with it, of runs that twist a rope
   std::string svg, csv;  // write these files instead of a page
 };
 int compare_command(const CompareArguments& arguments);
@@ -240,6 +241,8 @@ struct ExportArguments {
   bool quiet = false;
 };
 int export_command(const ExportArguments& arguments);
+
+int cite_command(const std::string& directory);
 
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it

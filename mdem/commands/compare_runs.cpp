@@ -9,6 +9,8 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "report/runs_page.hpp"
+#include "report/tensile.hpp"
+#include "report/torsion.hpp"
 
 namespace ropewalk {
 namespace {
@@ -71,26 +73,29 @@ std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string
   return groups;
 }
 
-void compare_pulls(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& with_others) {
+void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& with_others) {
   if (!a.y.empty() || !a.levels.empty() || a.log)
-    throw InputError({"", 0, "--tensile"}, "draws strength alone", "leave out --y, --level and --log");
-  const std::string x = a.x.empty() ? "beta_deg" : a.x;
+    throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
+                     a.torsion ? "draws the largest torque alone" : "draws strength alone",
+                     "leave out --y, --level and --log");
+  const LoadTestKind& kind = a.torsion ? torsion_kind() : tensile_kind();
+  const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
-  std::vector<TensileGroup> tests;
-  for (const RunGroup& group : groups) tests.push_back(tensile_of(group));
-  if (!a.svg.empty()) write(a.svg, drawn(tensile_svg(tests, x), "--x"));
-  if (!a.csv.empty()) write(a.csv, tensile_csv(tests, x));
+  std::vector<LoadTestGroup> tests;
+  for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
+  if (!a.svg.empty()) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
+  if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
   if (wanted.page.empty()) return;
   const std::vector<RunCurve> curves = curves_of(groups, true);
   RunsFigure figure;
-  figure.x = "ends_strain";
-  figure.y = {"stress_GPa"};
+  figure.x = a.torsion ? "rotation_deg" : "ends_strain";
+  figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
   for (const char* column : {"links_broken", "bonds_broken"})
     if (std::any_of(curves.begin(), curves.end(), [&](const RunCurve& c) { return c.log.back()[column] > 0; }))
       figure.y.push_back(column);
   Figures figures;
-  const std::string strength = tensile_part(tests, x, groups.front().line_keys, figures);
-  write(wanted.page, runs_page(wanted.title, curves, figure, figures, strength));
+  const std::string part = load_tests_part(kind, tests, x, groups.front().line_keys, figures);
+  write(wanted.page, runs_page(wanted.title, curves, figure, figures, part));
 }
 
 void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& groups) {
@@ -119,7 +124,7 @@ int compare_runs(const CompareArguments& a) {
   for (const std::string& path : a.names)
     for (RunGroup& group : groups_in(path)) groups.push_back(std::move(group));
   wanted.title = a.names.size() == 1 ? last_part_of(a.names.front()) : fmt::format("{} runs", groups.size());
-  (a.tensile ? compare_pulls : compare_curves)(a, wanted, groups);
+  (a.tensile || a.torsion ? compare_tests : compare_curves)(a, wanted, groups);
   return 0;
 }
 

@@ -4,8 +4,10 @@
 #include <filesystem>
 
 #include "commands/commands.hpp"
+#include "commands/siblings.hpp"
 #include "exchange/export_run.hpp"
 #include "exchange/import_run.hpp"
+#include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/lammps_files.hpp"
@@ -20,7 +22,9 @@ int export_command(const ExportArguments& a) {
     export_run({a.scene}, to, a.force, terminal);
   else
     export_scene(read_scene(a.scene), to, a.force, terminal);
-  if (!a.quiet) fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 lmp-ropewalk -in in.rope\n", to.path);
+  if (!a.quiet)
+    fmt::print("{0} written. Go on with: cd {0} && mpirun -np 2 {1} -in in.rope\n", to.path,
+               shell_quoted(find_program("lammps", "lmp-ropewalk")));
   return 0;
 }
 

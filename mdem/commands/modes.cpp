@@ -14,6 +14,7 @@
 #include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
+#include "sim/statics/stiffness.hpp"
 
 namespace ropewalk {
 namespace {
@@ -161,7 +162,7 @@ int modes_command(const ModesArguments& a) {
     fmt::print(stderr,
                "ropewalk: note: Links, friction and other terms with a memory stay as they are: modes are those of "
                "a rope in which none slips or breaks.\n");
-  const Tangent tangent = tangent_of(s);
+  const Tangent tangent = term_without_tangent(s).empty() ? tangent_by_blocks(s) : tangent_of(s);
   const double force = largest_free_force(s.topology(), tangent.force, free), speed = largest_speed(s);
   const double most_left = std::max(least_force, of_the_load * largest_load(s));
   if (!a.anyway && (force > most_left || speed > fastest_rest))

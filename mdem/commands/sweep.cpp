@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 
 #include "campaign/point_runs.hpp"
@@ -15,9 +14,9 @@
 #include "io/clocks.hpp"
 #include "io/failure.hpp"
 #include "io/files.hpp"
-#include "io/limits_file.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
+#include "run/results.hpp"
 #include "run/tell.hpp"
 
 namespace ropewalk {
@@ -38,7 +37,9 @@ int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<
     total += seconds[i];
     const PointProgress progress = progress_of(dir.point(points[i].name));
     fmt::print("{:>5}  {:<50} {:>10}{}\n", i + 1, points[i].name, duration_text(seconds[i]),
-               progress.stage == Stage::waiting ? "" : "  " + progress.status);
+               progress.stage == Stage::waiting
+                   ? ""
+                   : "  " + status_words(progress.status, limits_of(dir.point(points[i].name))));
   }
   const std::size_t runs = points.size();
   fmt::print("{} points, about {} of one core, {} on {} cores{}\n", runs, duration_text(total),
@@ -47,15 +48,11 @@ int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<
   return 0;
 }
 
-// How many times a limit was reached; 0: none was passed.
-double beyond_limits_of(const RunDirectory& dir) {
-  return std::filesystem::exists(dir.limits()) ? beyond_limits(read_limits(dir.limits()).limits) : 0;
-}
-
 int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points, bool with_table) {
   std::map<std::string, std::size_t> counts;
   std::vector<std::string> failed, beyond, elsewhere;
   double seconds = 0;
+  std::size_t passed = 0;
   for (const SweepPoint& p : points) {
     const PointProgress progress = progress_of(dir.point(p.name));
     ++counts[progress.status];
@@ -64,9 +61,10 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
       elsewhere.push_back(fmt::format("{}, by {}", p.name, holder_of(dir.point(p.name).path)));
     else if (progress.stage != Stage::ended)
       failed.push_back(p.name);
-    if (const double times = beyond_limits_of(dir.point(p.name));
-        times > far_beyond && progress.stage == Stage::ended)
-      beyond.push_back(fmt::format("{} ({:.3g} times)", p.name, times));
+    const std::vector<LimitRecord> limits = limits_of(dir.point(p.name));
+    if (first_limit(limits)) ++passed;
+    if (beyond_limits(limits) > far_beyond && progress.stage == Stage::ended)
+      beyond.push_back(fmt::format("{}, {}: {}", p.name, beyond_words(limits), worst_words(limits)));
   }
   std::string words;
   for (const auto& [status, count] : counts)
@@ -74,6 +72,9 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
   fmt::print("{} points: {}; {} of one core in all\n", points.size(), words, duration_text(seconds));
   for (const std::string& name : failed) tell_not_ended(dir, name);
   for (const std::string& name : elsewhere) tell("run elsewhere: " + name);
+  if (passed > 0)
+    fmt::print("{} of them {} beyond a limit of the model: see first_limit and first_limit_ps in the table\n",
+               passed, passed == 1 ? "is" : "are");
   for (const std::string& name : beyond) fmt::print("far beyond a limit: {}\n", name);
   if (with_table) fmt::print("Table: {}\n", dir.table());
   return failed.empty() && elsewhere.empty() ? 0 : 3;

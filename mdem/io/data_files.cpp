@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 
 #include "io/toml_table.hpp"
 
@@ -16,11 +17,23 @@ namespace fs = std::filesystem;
 std::string said_directory;
 const char* added_directory = nullptr;  // there before any static variable
 
+// How to make a set that is named by its chirality, of which none is shipped; empty: no such name.
+std::string how_to_make(const std::string& name, const std::vector<std::string>& shipped) {
+  std::smatch found;
+  if (!std::regex_match(name, found, std::regex("cnt-([0-9]{1,3})-([0-9]{1,3})(-[a-z]*)?"))) return "";
+  const std::string begin = fmt::format("cnt-{}-{}-", found[1].str(), found[2].str());
+  for (const std::string& set : shipped)
+    if (set.rfind(begin, 0) == 0) return "";
+  return fmt::format("`ropewalk calibrate --chirality {},{}` makes it", found[1].str(), found[2].str());
+}
+
 std::string instead_of(const std::string& name, const std::string& data) {
   const std::vector<std::string> shipped = shipped_sets(data);
   if (shipped.empty()) return fmt::format("no set is shipped in {}/parameters; is ROPEWALK_DATA right?", data);
-  const std::string near = nearest_word(name, shipped);
-  std::string text = near.empty() ? "" : fmt::format("did you mean \"{}\"? Or ", near);
+  const std::string near = nearest_word(name, shipped), make = how_to_make(name, shipped);
+  std::string text = !make.empty()  ? make + "; or "
+                     : near.empty() ? ""
+                                    : fmt::format("did you mean \"{}\"? Or ", near);
   text += "name a file, or a shipped set";
   const char* before = ": ";
   for (const std::string& n : shipped) {

@@ -1,10 +1,15 @@
 #include "io/limits_file.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
+#include "observe/limits.hpp"
 
 namespace ropewalk {
 namespace {
@@ -26,6 +31,11 @@ void visit_limit(R&& r, const Visit& v) {
   v({"passed", "", "whether the limit was passed"}, r.passed);
   v({"passed_at_ps", "ps", "time when it was passed first"}, r.passed_at_ps);
   v({"passed_at_step", "", "time step when it was passed first"}, r.passed_at_step);
+  v({"passed_tube", "", "tube where it was passed first, from 0; -1: not passed, or of the run as a whole"},
+    r.passed_tube);
+  v({"passed_element", "", "element where it was passed first, counted in the tube from 0; of a bond the first"},
+    r.passed_element);
+  v({"passed_held_by", "", "what holds that place, as `the upper clamp`; empty: nothing"}, r.passed_held_by);
 }
 
 template <class R, class Visit>
@@ -58,6 +68,9 @@ auto into(Json& json) {
 auto out_of(const Json& json) {
   return [&json](const OutputColumn& key, auto& value) {
     using Value = std::decay_t<decltype(value)>;
+    for (const char* later :
+         {"passed_tube", "passed_element", "passed_held_by"})  // not written by earlier versions
+      if (std::string(later) == key.name && !json.contains(key.name)) return;
     const Json& entry = json.at(key.name);
     if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>)
       if (!entry.is_number_integer()) throw std::runtime_error("no whole number");
@@ -91,6 +104,69 @@ std::vector<OutputColumn> energy_keys() {
   std::vector<OutputColumn> keys;
   visit_energies(EnergyParts(), listed_in(keys));
   return keys;
+}
+
+const LimitRecord* first_limit(const std::vector<LimitRecord>& limits) {
+  const LimitRecord* first = nullptr;
+  for (const LimitRecord& r : limits)
+    if (r.passed && (!first || std::tie(r.passed_at_ps, r.passed_at_step) <
+                                   std::tie(first->passed_at_ps, first->passed_at_step)))
+      first = &r;
+  return first;
+}
+
+std::string since_words(const LimitRecord& r) {
+  if (r.passed_at_step == 0) return "from the start on";
+  return r.passed_at_ps > 0 ? fmt::format("from {:.4g} ps on", r.passed_at_ps)
+                            : fmt::format("from step {} on", r.passed_at_step);
+}
+
+std::string place_words(const LimitRecord& r) {
+  if (r.passed_tube < 0) return "";
+  return fmt::format("tube {}, element {}{}", r.passed_tube, r.passed_element,
+                     r.passed_held_by.empty() ? "" : ", at " + r.passed_held_by);
+}
+
+std::string beyond_words(const std::vector<LimitRecord>& limits) {
+  const LimitRecord* first = first_limit(limits);
+  return first ? fmt::format("beyond {} {}", first->key, since_words(*first)) : "";
+}
+
+std::string status_words(const std::string& status, const std::vector<LimitRecord>& limits) {
+  const std::string beyond = beyond_words(limits);
+  return beyond.empty() ? status : status + ", " + beyond;
+}
+
+std::string beyond_sentence(const std::vector<LimitRecord>& limits) {
+  const LimitRecord* first = first_limit(limits);
+  if (!first) return "";
+  std::string since = since_words(*first);
+  since[0] = 'F';
+  std::string text = fmt::format("{} this run is beyond a limit of its model: {}", since, first->key);
+  if (first->passed_tube >= 0) text += ", passed in " + place_words(*first);
+  for (const LimitKind& kind : limit_kinds())
+    if (first->key == kind.key) text += fmt::format(": {}", kind.consequence);
+  const auto others =
+      std::count_if(limits.begin(), limits.end(), [](const LimitRecord& r) { return r.passed; }) - 1;
+  text += others == 0   ? "."
+          : others == 1 ? ". Another limit was passed as well."
+                        : fmt::format(". {} other limits were passed as well.", others);
+  return text;
+}
+
+std::string worst_words(const std::vector<LimitRecord>& limits) {
+  const LimitRecord* worst = nullptr;
+  const auto ratio = [](const LimitRecord& r) { return r.passed && r.limit > 0 ? r.largest / r.limit : 0; };
+  for (const LimitRecord& r : limits)
+    if (ratio(r) > (worst ? ratio(*worst) : 0)) worst = &r;
+  return worst ? fmt::format("{} reached {:.3g} times its limit", worst->key, ratio(*worst)) : "";
+}
+
+double beyond_limits(const std::vector<LimitRecord>& limits) {
+  double most = 0;
+  for (const LimitRecord& r : limits)
+    if (r.passed && r.limit > 0) most = std::max(most, r.largest / r.limit);
+  return most;
 }
 
 std::string limits_json(const LimitsFile& file) {

@@ -22,7 +22,28 @@ struct LimitRecord {
   bool passed = false;
   double passed_at_ps = 0;
   std::int64_t passed_at_step = 0;
+  int passed_tube = -1, passed_element = -1;  // where it was passed first, counted likewise; -1: at no element
+  std::string passed_held_by = {};            // what holds that place: "the upper clamp"; empty: nothing
 };
+
+// The limit that was passed first; null: none was.
+const LimitRecord* first_limit(const std::vector<LimitRecord>& limits);
+// "from 243 ps on", or, in a relaxation, "from step 120 on".
+std::string since_words(const LimitRecord& passed);
+// "tube 25, element 44, at the upper clamp"; empty for the run as a whole.
+std::string place_words(const LimitRecord& passed);
+// "beyond wall_twist from 243 ps on", of the limit that was passed first; empty: none was.
+std::string beyond_words(const std::vector<LimitRecord>& limits);
+// The same as a sentence or two, with the place and what is wrong there; empty: none was.
+std::string beyond_sentence(const std::vector<LimitRecord>& limits);
+// How a run ended and whether it is beyond a limit: "finished, beyond wall_twist from 243 ps on".
+std::string status_words(const std::string& status, const std::vector<LimitRecord>& limits);
+// The largest value over its limit, of the limits that were passed; 0: none was. Beyond `far_beyond` the results of
+// a run are not those of the tubes.
+double beyond_limits(const std::vector<LimitRecord>& limits);
+inline constexpr double far_beyond = 3;
+// "wall_twist reached 3.63 times its limit", of the one that was passed by most; empty: none was.
+std::string worst_words(const std::vector<LimitRecord>& limits);
 
 // Energies of a state, by kind (eV).
 struct EnergyParts {

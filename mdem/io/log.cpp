@@ -77,8 +77,9 @@ std::string damping_words(const LogRow& row) {
   const double lost = row["dissipated_eV"], damping = row["damping_eV"];
   if (!(lost > 0.01 * std::fabs(row["work_eV"])) || !(damping > 0.1 * lost)) return "";
   return fmt::format(
-      "Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that are lost: trust "
-      "where the rope rests, not how it came there, nor which of several states of rest it chose.",
+      "Numerical damping, which atoms do not have, took {:.3g} % of the {:.3g} eV that were lost. Final "
+      "equilibrium "
+      "states are meaningful; the path, the speed and the choice among several equilibria depend on the damping.",
       100 * damping / lost, lost);
 }
 
@@ -87,18 +88,6 @@ const LogRow* strongest_row(const std::vector<LogRow>& log) {
   for (const LogRow& row : log)
     if (row["stress_GPa"] > (most ? (*most)["stress_GPa"] : 0)) most = &row;
   return most;
-}
-
-std::string strength_words(const std::vector<LogRow>& log) {
-  const LogRow* most = strongest_row(log);
-  if (!most) return "";
-  const double links = log.back()["links_broken"], bonds = log.back()["bonds_broken"];
-  if (!(links + bonds > 0)) return "";
-  return fmt::format(
-      "Largest stress {:.3g} GPa ({:.3g} N/tex), at a strain of {:.3g}; {:.0f} of {:.0f} links and {:.0f} bonds of "
-      "tubes have broken.",
-      (*most)["stress_GPa"], (*most)["specific_stress_N_per_tex"], (*most)["ends_strain"], links,
-      log.back()["links_formed"], bonds);
 }
 
 std::string log_header() {

@@ -41,9 +41,6 @@ std::string damping_words(const LogRow& row);
 
 // The row with the largest stress; null where no end pulls.
 const LogRow* strongest_row(const std::vector<LogRow>& log);
-// That stress and its strain in words, for a rope whose links or tubes have broken. Empty: none has broken, or no
-// end pulls.
-std::string strength_words(const std::vector<LogRow>& log);
 
 std::string log_header();
 std::string log_line(const LogRow& row);  // full precision: reading it back gives the same bits

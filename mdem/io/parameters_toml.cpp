@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -35,13 +36,15 @@ std::string read_origin(const TomlTable& q) {
   return q.word("origin", origins);
 }
 
-// A row of numbers for each parameter of the universal law.
-void read_row(const TomlTable& section, const char* key, UniversalLine::Row& out, UniversalLine::Row& errors) {
+// A row of numbers with their errors.
+template <std::size_t size>
+void read_row(const TomlTable& section, const char* key, std::array<double, size>& out,
+              std::array<double, size>& errors) {
   const std::string form = "{ values = [...], standard_errors = [...] }";
   if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
   const TomlTable q = section.table(key, form);
-  const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), UniversalLine::terms);
-  const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), UniversalLine::terms);
+  const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), size);
+  const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), size);
   std::copy(values.begin(), values.end(), out.begin());
   std::copy(se.begin(), se.end(), errors.begin());
 }
@@ -120,6 +123,38 @@ class Reader {
     set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
     if (t.has("kGA")) set_.bond.shear = quantity(t, "kGA", "nN", stiffness) * units::nN_nm;
     if (t.has("anharmonic")) set_.anharmonic = read_anharmonic(t.table("anharmonic"));
+    if (!t.has("pull")) return;
+    if (!set_.anharmonic) throw t.error("pull", "goes on where [bond.anharmonic] ends, which is missing", "add it");
+    read_pull(t.table("pull"));
+  }
+
+  void read_pull(const TomlTable& t) {
+    Anharmonic& h = *set_.anharmonic;
+    Pull pull;
+    pull.end = quantity(t, "end", "1", Bounds::range(h.max_strain, 1));
+    if (pull.end <= h.max_strain)
+      throw t.error("end", fmt::format("is {}", pull.end),
+                    fmt::format("must lie beyond max_strain = {}", h.max_strain));
+    read_row(t, "force", pull.force, set_.pull_errors);
+    for (auto* row : {&pull.force, &set_.pull_errors})
+      for (double& force : *row) force *= units::nN_nm;
+    const EdgeOfWindow edge = edge_of_window(h, set_.bond.stretch);
+    if (!(std::fabs(pull.force[0] / edge.force - 1) < 0.1))
+      throw t.error("force", fmt::format("begins with {:.4g} nN", pull.force[0] * units::eV_in_nN_nm),
+                    fmt::format("the terms of [bond.anharmonic] end with {:.4g} nN: calibrate the set anew",
+                                edge.force * units::eV_in_nN_nm));
+    std::array<double, PULL_STEPS + 1> force = pull.force;
+    force[0] = edge.force;
+    const double first = force[1] - force[0], step = (pull.end - h.max_strain) / PULL_STEPS;
+    for (std::size_t k = 0; k < PULL_STEPS; ++k)
+      if (!(force[k + 1] > force[k]))
+        throw t.error("force", fmt::format("does not rise from value {} to value {}", k, k + 1),
+                      "end the pull where the force is largest");
+    if (edge.slope * step > 3 * first)
+      throw t.error("force", "rises too little at its beginning for a smooth law",
+                    "calibrate the set anew, with a smaller max_strain");
+    set_.pull = pull;
+    set_pull(h, set_.bond.stretch, pull);
   }
 
   Anharmonic read_anharmonic(const TomlTable& t) {
@@ -392,9 +427,19 @@ std::string quantity_text(const Quantity& q, const std::string& key) {
 
 namespace {
 
-std::string row_text(const char* key, const UniversalLine::Row& value, const UniversalLine::Row& error) {
+template <class Row>
+std::string row_text(const char* key, const Row& value, const Row& error) {
   return fmt::format("{:<16} = {{ values = [{}], standard_errors = [{}] }}\n", key, fmt::join(value, ", "),
                      fmt::join(error, ", "));
+}
+
+std::string pull_row_text(const ParameterSet& set) {
+  std::array<std::string, PULL_STEPS + 1> values, errors;
+  for (std::size_t k = 0; k <= PULL_STEPS; ++k) {
+    values[k] = fmt::format("{:.8g}", set.pull->force[k] * units::eV_in_nN_nm);
+    errors[k] = fmt::format("{:.2g}", set.pull_errors[k] * units::eV_in_nN_nm);
+  }
+  return row_text("force", values, errors);
 }
 
 }  // namespace
@@ -427,6 +472,7 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
       section = q.key.substr(0, dot);
       text += fmt::format("\n[{}]\n", section);
       if (section == "contact.line.universal") text += universal_rows_text(set.line->universal);
+      if (section == "bond.pull") text += pull_row_text(set);
     }
     text += quantity_text(q, q.key.substr(dot + 1));
   }

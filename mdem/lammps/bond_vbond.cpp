@@ -67,9 +67,8 @@ void BondVBond::tally(int i, int j, const BondForce& f, const Vector3& separatio
 void BondVBond::refuse_slip(int element) {
   refuse_one(lmp,
              "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element) +
-                 ": the bond to the next element is twisted by 90 degrees, where its torque is largest: it is "
-                 "about to slip and forget a turn",
-             "lower the twisting moment");
+                 ": the bond to the next element is twisted by 90 degrees and cannot carry more torque",
+             "use shorter elements or less twist");
 }
 
 // The engine has computed the bonds with the contact.

@@ -76,6 +76,8 @@ FUNCTION Turn turned(Vec w, double dt, Turn q) {
 
 // --- anharmonic energies per length (anharmonic.hpp) ---------------------------------------------------
 
+#define PULL_STEPS 8  // of the law of stretch beyond the window
+
 struct Anharmonic {
   int used DEFAULT_0;                                                               // 0: the bond is harmonic
   double radius DEFAULT_0;                                                          // nm
@@ -85,6 +87,11 @@ struct Anharmonic {
   double b4 DEFAULT_0;                                                              // c_b, eV/nm
   double min_strain DEFAULT_0, max_strain DEFAULT_0, max_shear DEFAULT_0,
       max_bend DEFAULT_0;  // window of e, |s|, b
+  // What the pull adds to the tangent, at max_strain + k pull_step: force (eV/nm), its slope (eV/nm) and its integral
+  // over the strain (eV/nm).
+  double pull_step DEFAULT_0;  // 0: no pull is known
+  double pull_force[PULL_STEPS + 1] DEFAULT_0, pull_slope[PULL_STEPS + 1] DEFAULT_0,
+      pull_energy[PULL_STEPS + 1] DEFAULT_0;
 };
 typedef struct Anharmonic Anharmonic;
 
@@ -121,6 +128,43 @@ FUNCTION StrainEnergy strain_energy(GLOBAL const Anharmonic* h, double strain, d
   out.energy = w + we * de + (ws + wes * de) * ds + h->coupling * strain * twist;
   out.by_strain = we + wes * ds + h->coupling * twist;
   out.by_twist = h->radius * (ws + wes * de) + h->coupling * strain;
+  return out;
+}
+
+typedef struct {
+  double energy, by_strain, by_strain2;
+} StretchEnergy;
+
+// The slope that the terms of strain alone add to EA at the upper edge of the window (eV/nm).
+FUNCTION double slope_at_edge(GLOBAL const Anharmonic* h) {
+  return 6 * h->max_strain * (h->e3 + 2 * h->e4 * h->max_strain);
+}
+
+// What the law of stretch adds, beyond the window, to EA/2 e^2 and to strain_energy().
+FUNCTION StretchEnergy stretch_beyond(GLOBAL const Anharmonic* h, double EA, double strain) {
+  const double beyond = larger(strain - h->max_strain, 0.0), step = h->pull_step;
+  StretchEnergy out;
+  if (step == 0 || beyond == 0) {
+    out.by_strain2 = beyond > 0 ? slope_at_edge(h) : 0;
+    out.by_strain = out.by_strain2 * beyond;
+    out.energy = 0.5 * out.by_strain * beyond;
+    return out;
+  }
+  const double past = beyond - PULL_STEPS * step;
+  if (past >= 0) {
+    out.by_strain2 = -EA;
+    out.by_strain = h->pull_force[PULL_STEPS] - EA * past;
+    out.energy = h->pull_energy[PULL_STEPS] + past * (h->pull_force[PULL_STEPS] - 0.5 * EA * past);
+    return out;
+  }
+  const int k = (int)smaller(beyond / step, PULL_STEPS - 1.0);
+  // The cubic of both forces and slopes, in t = 0 .. 1.
+  const double t = beyond / step - k, f = h->pull_force[k], m = h->pull_slope[k] * step;
+  const double rise = h->pull_force[k + 1] - f, m1 = h->pull_slope[k + 1] * step;
+  const double c2 = 3 * rise - 2 * m - m1, c3 = m + m1 - 2 * rise;
+  out.by_strain = f + t * (m + t * (c2 + t * c3));
+  out.by_strain2 = (m + t * (2 * c2 + 3 * t * c3)) / step;
+  out.energy = h->pull_energy[k] + step * t * (f + t * (m / 2 + t * (c2 / 3 + t * c3 / 4)));
   return out;
 }
 
@@ -215,8 +259,15 @@ FUNCTION double squared_angle_slope(double u) {
   return 2.0 * (1.0 + u * (2.0 / 6 + u * (6.0 / 45 + u * (4.0 / 70 + u * (40.0 / 1575)))));
 }
 
-// angle: of twist, rad. Each reader has an arc tangent of its own.
-FUNCTION BondAction anharmonic_bond(GLOBAL const BondStiffness* k, double share, double a, Vec separation,
+// The strain of the arc of an anharmonic bond; length: of the separation.
+FUNCTION double arc_strain(double a, double length, BodyFrame i, BodyFrame j) {
+  const double u = vec_norm2(vec_difference(i.t, j.t)) * 0.5, arc = 1.0 + u * (1.0 / 12);
+  return length * arc / a - 1.0;
+}
+
+// The anharmonic bond without what its law of stretch adds beyond the window. angle: of twist, rad. Each reader has
+// an arc tangent of its own.
+FUNCTION BondAction window_bond(GLOBAL const BondStiffness* k, double share, double a, Vec separation,
                                     BodyFrame i, BodyFrame j, double angle) {
   const double length = sqrt(vec_norm2(separation));
   const Vec d = vec_divided(separation, length);
@@ -245,6 +296,33 @@ FUNCTION BondAction anharmonic_bond(GLOBAL const BondStiffness* k, double share,
   const Vec lean = vec_scaled(shear / sum_norm, vec_difference(d, vec_scaled(cos_psi, along)));
   out.torque_i = vec_difference(bending, vec_cross(lean, i.t));
   out.torque_j = vec_difference(vec_negative(bending), vec_cross(lean, j.t));
+  return out;
+}
+
+// What the law of stretch adds beyond the window; nothing within it.
+FUNCTION BondAction bond_beyond(GLOBAL const BondStiffness* k, double a, Vec separation, BodyFrame i, BodyFrame j) {
+  const double length = sqrt(vec_norm2(separation)), arc = 1.0 + vec_norm2(vec_difference(i.t, j.t)) * (0.5 / 12);
+  const StretchEnergy more = stretch_beyond(&k->anharmonic, k->stretch, arc_strain(a, length, i, j));
+  const Vec bending = vec_scaled(more.by_strain * length * (1.0 / 12), vec_cross(i.t, j.t));
+  BondAction out;
+  out.energy.stretch = a * more.energy;
+  out.energy.shear = out.energy.bend = out.energy.twist = 0;
+  out.force_j = vec_scaled(-(more.by_strain * arc / length), separation);
+  out.torque_i = bending;
+  out.torque_j = vec_negative(bending);
+  return out;
+}
+
+FUNCTION BondAction anharmonic_bond(GLOBAL const BondStiffness* k, double share, double a, Vec separation,
+                                    BodyFrame i, BodyFrame j, double angle) {
+  BondAction out = window_bond(k, share, a, separation, i, j, angle);
+  if (arc_strain(a, sqrt(vec_norm2(separation)), i, j) > k->anharmonic.max_strain) {
+    const BondAction more = bond_beyond(k, a, separation, i, j);
+    out.energy.stretch += more.energy.stretch;
+    out.force_j = vec_sum(out.force_j, more.force_j);
+    out.torque_i = vec_sum(out.torque_i, more.torque_i);
+    out.torque_j = vec_sum(out.torque_j, more.torque_j);
+  }
   return out;
 }
 

@@ -7,6 +7,10 @@
 //   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
 //   and
 //               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
+//   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers]
+//   }
+//               (nN), of a tube that is pulled and not twisted, at equal steps of strain from max_strain to end;
+//               end (strain), the last that the atoms bear or that their potential describes
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
 //   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
@@ -100,6 +104,8 @@ struct ParameterSet {
   double element_length = 0;    // nm
   BondStiffness bond;           // eV/nm, eV nm; harmonic
   std::optional<Anharmonic> anharmonic;
+  std::optional<Pull> pull;                          // part of `anharmonic`, as the file has it
+  std::array<double, PULL_STEPS + 1> pull_errors{};  // standard errors of its forces, eV/nm
   std::optional<PaperContact> paper;
   std::optional<LineParameters> line;
   Validity validity;
@@ -109,6 +115,10 @@ struct ParameterSet {
   std::string path;  // where it was read from
   std::string hash;  // xxh64 of the file, hex
 
+  // The largest strain to which bonds follow the atoms.
+  double end_of_stretch() const {
+    return pull ? pull->end : anharmonic ? anharmonic->max_strain : validity.stretch;
+  }
   double element_mass(double length) const { return atoms_per_length * length * units::carbon_mass; }
   // The anharmonic bond where the set has one, of tubes of this length (nm; 0: endless), which collapse at
   // validity.collapse_at.

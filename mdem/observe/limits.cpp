@@ -84,7 +84,7 @@ void overlap_of_tube(const Topology& topology, const State& state, const Vec3Arr
 }  // namespace
 
 const std::array<LimitKind, limit_count>& limit_kinds() {
-  constexpr const char* finer = "take a shorter element_length_nm, or --on-limit refine";
+  constexpr const char* finer = "take a shorter element_length_nm";
   static const std::array<LimitKind, limit_count> kinds = {{
       {"bend_deg", "deg", units::degree, &Limits::bend, "the bond to the next element is bent by",
        "the chain is no longer the rod", finer, true},
@@ -110,6 +110,27 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "the load is a blow, and where the rope ends depends on it", "ramp the moment more slowly", false, true},
   }};
   return kinds;
+}
+
+std::string holder_in_words(const Topology& topology, const std::vector<Held>& held, int element) {
+  if (held.empty() || element < 0) return "";
+  const int tube = topology.tube_of(element), from = topology.tube_begin[tube], to = topology.tube_begin[tube + 1];
+  const Held own = held[static_cast<std::size_t>(element)],
+             next = element + 1 < to ? held[static_cast<std::size_t>(element + 1)] : Held::free;
+  const Held by = std::max(own, next);
+  if (by == Held::free) return "";
+  const bool lower = element == from && topology.begins_strand(tube),
+             upper = element + 2 >= to && topology.ends_strand(tube) && !(lower && own != Held::free);
+  if (!lower && !upper) return by == Held::clamped ? "a clamp" : "a loaded place";
+  const char* end = upper ? "upper" : "lower";
+  return by == Held::clamped ? std::string("the ") + end + " clamp" : std::string("the loaded ") + end + " end";
+}
+
+std::string place_in_words(const Topology& topology, const std::vector<Held>& held, int element) {
+  const int tube = topology.tube_of(element);
+  const std::string holder = holder_in_words(topology, held, element);
+  return "tube " + std::to_string(tube) + ", element " + std::to_string(element - topology.tube_begin[tube]) +
+         (holder.empty() ? "" : ", at " + holder);
 }
 
 double collapse_pressure(double radius) {

@@ -71,7 +71,7 @@ struct LimitKind {
   double Limits::*limit;
   const char* what;         // "the bond to the next element is bent by"
   const char* consequence;  // what is wrong there
-  const char* remedy;       // for one who meets it
+  const char* remedy;       // for one who meets it; with `cured_by_finer`, --on-limit refine is another one
   bool cured_by_finer;      // would shorter elements help
   bool whole = false;       // of the run as a whole, at no element
 };
@@ -89,14 +89,24 @@ struct Peak {
 };
 using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
 
+// What loads and constraints do to an element.
+enum class Held : char { free, loaded, clamped };
+
 // The limits of one scene.
 struct Watched {
   std::vector<Limits> limits;  // by tube type
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
   // The pressure on every tube of a state, eV/nm^3; none: not watched.
   std::function<std::vector<double>(const State&)> pressures = {};
-  double twist_energy = 0;  // eV, of the tubes under the whole moment; 0: a shock is not watched
+  double twist_energy = 0;      // eV, of the tubes under the whole moment; 0: a shock is not watched
+  std::vector<Held> held = {};  // of each element of the scene; empty: all are free
 };
+
+// "the upper clamp", "the loaded lower end" or "a loaded place": what holds this element, or that behind it in its
+// tube; empty: nothing does.
+std::string holder_in_words(const Topology& topology, const std::vector<Held>& held, int element);
+// "tube 3, element 12, at the upper clamp": both counted from 0, the element in its tube.
+std::string place_in_words(const Topology& topology, const std::vector<Held>& held, int element);
 
 // eV/nm^3, for a tube of this radius (nm).
 double collapse_pressure(double radius);

@@ -174,16 +174,15 @@ std::string words_of(const QuasiStatic& q) {
   std::string text =
       q.slice
           ? fmt::format(
-                "Twist enters the slice at its ends and needs {:.3g} ps to its middle, and the turn lasts {:.3g} "
-                "ps: torques are those of rest within {} % at most",
+                "A twist wave needs {:.3g} ps from the ends of the slice to its middle and the ramp lasts {:.3g} ps: "
+                "the torque may be up to {} % off its quasi-static value.",
                 0.5 * q.travel, q.time, percent)
           : fmt::format(
-                "Twist needs {:.3g} ps from end to end, and the turn lasts {:.3g} ps: torques are those of rest "
-                "within {} % at most, by which both ends differ from their mean",
+                "A twist wave needs {:.3g} ps from end to end and the ramp lasts {:.3g} ps: the torque of either end "
+                "may be up to {} % off its quasi-static value.",
                 q.travel, q.time, percent);
   if (q.error > enough)
-    text += fmt::format("; for {:.2g} % turn in {:.3g} ps", 100 * enough, q.time * q.error / enough);
-  text += ".";
+    text += fmt::format(" Ramp over {:.3g} ps for {:.2g} %.", q.time * q.error / enough, 100 * enough);
   if (q.drag > 0.01)
     text += fmt::format(
         " The bath is at rest and brakes the turning rope by about {:.2g} % of that torque: lower "

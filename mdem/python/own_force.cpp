@@ -45,6 +45,27 @@ class OwnLoad : public Load {
   std::shared_ptr<OwnForce> force_;
 };
 
+class OwnDrive : public Drive {
+ public:
+  explicit OwnDrive(std::shared_ptr<OwnForce> force) : force_(std::move(force)) {}
+
+  SceneTable table() const override { return {"own force", "", {}, false}; }
+  std::string words() const override { return "a force of one's own, in Python"; }
+  void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints& loads) const override {
+    OwnForce::add_load(force_, loads);
+  }
+  void add_terms(const Scene&, const Topology&, const State&, Interaction& interaction) const override {
+    OwnForce::add_term_of(force_, interaction);
+  }
+  std::string why_not_split() const override {
+    return "it has forces of one's own, which know these elements alone";
+  }
+  std::string not_for_lammps() const override { return "forces of one's own"; }
+
+ private:
+  std::shared_ptr<OwnForce> force_;
+};
+
 }  // namespace
 
 std::shared_ptr<OwnForce> OwnForce::make(py::function function) {
@@ -57,10 +78,23 @@ std::shared_ptr<OwnForce> OwnForce::make(py::function function) {
 void OwnForce::add(const std::shared_ptr<OwnForce>& force, const State& start, Interaction& interaction,
                    LoadsAndConstraints& loads) {
   force->at(start);
-  if (*force->has_energy_)
-    add_term(std::make_shared<OwnTerm>(force), interaction);
-  else
-    add_load(force, loads);
+  add_term_of(force, interaction);
+  add_load(force, loads);
+}
+
+void OwnForce::add_term_of(const std::shared_ptr<OwnForce>& force, Interaction& interaction) {
+  if (*force->has_energy_) add_term(std::make_shared<OwnTerm>(force), interaction);
+}
+
+std::vector<std::shared_ptr<const Drive>> OwnForce::drives(const std::vector<py::function>& functions,
+                                                           const State& start) {
+  std::vector<std::shared_ptr<const Drive>> out;
+  for (const py::function& function : functions) {
+    const std::shared_ptr<OwnForce> force = make(function);
+    force->at(start);
+    out.push_back(std::make_shared<OwnDrive>(force));
+  }
+  return out;
 }
 
 void OwnForce::add_load(const std::shared_ptr<OwnForce>& force, LoadsAndConstraints& loads) {

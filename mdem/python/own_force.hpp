@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "python/module.hpp"
+#include "scene/drive.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
@@ -26,7 +28,11 @@ class OwnForce {
   // work counts as supplied. `start`: the first state that it sees.
   static void add(const std::shared_ptr<OwnForce>& force, const State& start, Interaction& interaction,
                   LoadsAndConstraints& loads);
-  // Only that part of it which is a load.
+  // As drives of a scene, which last as long as its runs. `start`: the first state that they see.
+  static std::vector<std::shared_ptr<const Drive>> drives(const std::vector<py::function>& functions,
+                                                          const State& start);
+  // Only that part of it which is a force term, and that which is a load.
+  static void add_term_of(const std::shared_ptr<OwnForce>& force, Interaction& interaction);
   static void add_load(const std::shared_ptr<OwnForce>& force, LoadsAndConstraints& loads);
 
   // Throws what the function raises, and std::invalid_argument where it gives an energy at some times only. None

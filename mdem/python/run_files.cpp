@@ -7,6 +7,7 @@
 #include "io/manifest.hpp"
 #include "io/parameters_toml.hpp"
 #include "python/arrays.hpp"
+#include "run/results.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk::python {
@@ -35,6 +36,23 @@ void bind_run_files(py::module_& m) {
     const std::string path = find_parameters(name, "", {"", 0, "parameters"});
     const ParameterSet set = read_parameters(path);
     return py::make_tuple(path, set.name, grade_of(set).words());
+  });
+  // What came of a run: the columns that tables of runs have, and whether it is beyond a limit, in words.
+  m.def("run_results", [](const std::string& directory) {
+    const RunDirectory run{directory};
+    refuse_strange_files(run);
+    const RunResults r = results_of(run);
+    py::dict out;
+    out[limit_columns()[0].name] = r.first_limit;
+    out[limit_columns()[1].name] = r.first_limit_ps;
+    const std::vector<double> values = result_values(r);
+    for (std::size_t k = 0; k < values.size(); ++k) out[result_columns()[k].name] = values[k];
+    return out;
+  });
+  m.def("beyond_words", [](const std::string& directory) {
+    const RunDirectory run{directory};
+    refuse_strange_files(run);
+    return beyond_words(limits_of(run));
   });
   m.def("limits_json", [](const std::string& path) {
     refuse_strange(path);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "model/error.hpp"
+#include "python/own_force.hpp"
 #include "python/scene.hpp"
 #include "run/begin_run.hpp"
 #include "run/threads.hpp"
@@ -94,6 +95,7 @@ struct Asked {
   std::optional<double> wall_time_s;
   std::string instructions, device;
   py::object tell, progress;
+  std::vector<py::function> forces;
 };
 
 template <class Settings>
@@ -141,9 +143,15 @@ void go(const Asked& asked, Begin begin) {
                      "resume it to write them");
 }
 
+std::vector<std::shared_ptr<const Drive>> own_drives(const Asked& asked, Scene scene) {
+  if (asked.forces.empty()) return {};
+  return OwnForce::drives(asked.forces, prepare(scene).state);
+}
+
 void run(const SceneHandle& scene, const std::string& out, bool force, const Asked& asked) {
   auto settings = settings_of<RunSettings>(asked);
   settings.force = force;
+  settings.own_drives = own_drives(asked, scene.scene());
   go(asked, [&](RunListener& listener) {
     if (!asked.instructions.empty() && !use_instructions(asked.instructions))
       throw InputError({"", 0, "instructions"}, fmt::format("there is no \"{}\" here", asked.instructions),
@@ -155,6 +163,7 @@ void run(const SceneHandle& scene, const std::string& out, bool force, const Ask
 void resume(const std::string& directory, bool accept_changes, const Asked& asked) {
   auto settings = settings_of<ResumeSettings>(asked);
   settings.accept_changes = accept_changes;
+  if (!asked.forces.empty()) settings.own_drives = own_drives(asked, read_run_scene({directory}));
   go(asked, [&](RunListener& listener) { return resume_run({directory}, settings, listener); });
 }
 
@@ -165,11 +174,12 @@ void bind_runs(py::module_& m) {
       .def(py::init([](std::optional<std::int64_t> steps, std::optional<double> until_ps,
                        std::optional<int> threads, const std::string& on_limit, std::optional<double> wall_time_s,
                        const std::string& instructions, const std::string& device, const py::object& tell,
-                       const py::object& progress) {
-             return Asked{steps, until_ps, threads, on_limit, wall_time_s, instructions, device, tell, progress};
+                       const py::object& progress, std::vector<py::function> forces) {
+             return Asked{steps,        until_ps, threads, on_limit, wall_time_s,
+                          instructions, device,   tell,    progress, std::move(forces)};
            }),
            py::arg("steps"), py::arg("until_ps"), py::arg("threads"), py::arg("on_limit"), py::arg("wall_time_s"),
-           py::arg("instructions"), py::arg("device"), py::arg("tell"), py::arg("progress"));
+           py::arg("instructions"), py::arg("device"), py::arg("tell"), py::arg("progress"), py::arg("forces"));
   m.def("run", run, py::arg("scene"), py::arg("out"), py::arg("force"), py::arg("options"));
   m.def("resume", resume, py::arg("directory"), py::arg("accept_changes"), py::arg("options"));
 }

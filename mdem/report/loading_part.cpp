@@ -37,15 +37,13 @@ Panel torque(const std::vector<LogRow>& log) {
     out.traces = {most_upper > most_lower ? Trace{"upper", upper, 0} : Trace{"lower", lower, 1}};
     return out;
   }
-  const LogValue mean = [=](const LogRow&r) { return 0.5 * (upper(r) + lower(r)); },
-                 half = [=](const LogRow&r) { return 0.5 * std::fabs(upper(r) - lower(r)); };
+  const LogValue mean = torque_of(log), half = [=](const LogRow&r) { return 0.5 * std::fabs(upper(r) - lower(r)); };
   double apart = 0, whole = 0;
   for (const LogRow& r : log)
     if (std::isfinite(mean(r))) apart += half(r), whole += std::fabs(mean(r));
   out.caption = fmt::format(
-      "Torque about z that twists the rope, mean of both ends and of the time between two rows. The band goes from "
-      "one end to the other, which are equal where nothing moves; here they are on average <b>{} %</b> off their "
-      "mean.",
+      "Torque about z, averaged over both ends and over the time between two rows. The band spans the two ends; in "
+      "equilibrium they agree. Here they differ from their mean by <b>{} %</b> on average.",
       number_text(100 * apart / whole, 2));
   out.traces = {{"mean of both ends", mean, 0, false, half}};
   return out;
@@ -130,7 +128,7 @@ std::string tension_figure(const ReportInput& in, Figures& figures) {
   for (std::size_t k = 0; k < some.size(); ++k) {
     const auto& [radius, tubes] = *all.find(chosen[some[k]]);
     ChartLine line;
-    line.name = fmt::format("{} nm", number_text(radius, 3));
+    line.name = fmt::format("at {} nm", number_text(radius, 3));
     line.colour = sequential_colour(k, some.size());
     for (std::size_t i = 0; i < last.tension_nN[tubes[0]].size(); ++i) {
       double sum = 0;
@@ -161,7 +159,7 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
     const ReportLoading& frame = in.loading[k];
     if (frame.pressure_GPa.empty()) continue;
     ChartLine line;
-    line.name = number_text(frame.time_ps) + " ps";
+    line.name = "at " + number_text(frame.time_ps) + " ps";
     line.colour = sequential_colour(k, in.loading.size());
     for (const auto& [radius, tubes] : rings(frame.radius)) {
       double sum = 0;
@@ -198,6 +196,24 @@ std::string loop_words(const std::vector<LogRow>& log) {
       number_text(in - log.back()["work_eV"]),
       number_text(log.back()["work_eV"] - (potential_energy(log.back()) - potential_energy(log.front()))),
       number_text(100 * lost / in, 3)));
+}
+
+// What the rope stores as long as the model holds.
+std::string stored_words(const ReportInput& in) {
+  const double most = largest(in.log, "stored_MJ_per_kg"), within = in.results.stored_at_limit;
+  std::string text;
+  if (in.results.first_limit.empty())
+    text = fmt::format("This rope stored up to <b>{} MJ/kg</b> in this run.", number_text(most, 3));
+  else
+    text = (std::isfinite(within)
+                ? fmt::format("This rope stored <b>{} MJ/kg</b> when {} was passed.", number_text(within, 3),
+                              escape_markup(in.results.first_limit))
+                : fmt::format("{} was passed from the start.", escape_markup(in.results.first_limit))) +
+           fmt::format(" Beyond, it reached {} MJ/kg, which no real tubes hold.", number_text(most, 3));
+  return text +
+         " For scale, what others measured and calculated. One perfect bundle is not a macroscopic rope: a yarn "
+         "has bundles "
+         "that slip, gaps, bent and short tubes, and the mass of what is not loaded.";
 }
 
 // The figures of other authors and samples, with their sources.
@@ -246,13 +262,7 @@ std::string loading_part(const ReportInput& in, Figures& figures) {
   html += heading("Stored energy");
   const std::string energy = panel(stored(in.log)), parts = panel(shares(in.log));
   html += pair_of(energy, parts);
-  if (twisted && largest(in.log, "stored_MJ_per_kg") > 1e-3)
-    html +=
-        paragraph(fmt::format("This rope stores up to <b>{} MJ/kg</b> in this run. Beside it, what others measured "
-                              "and calculated. One perfect bundle is not a macroscopic rope: a yarn has bundles "
-                              "that slip, gaps, bent and short tubes, and the mass of what is not loaded.",
-                              number_text(largest(in.log, "stored_MJ_per_kg"), 3))) +
-        literature();
+  if (twisted && largest(in.log, "stored_MJ_per_kg") > 1e-3) html += paragraph(stored_words(in)) + literature();
   if (in.loading.empty()) return html;
   html += heading("Inside the rope");
   const std::string along = tension_figure(in, figures), across = pressure_figure(in, figures);

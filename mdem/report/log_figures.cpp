@@ -65,9 +65,16 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   chart.y = panel.axis;
   if (clock.column == "time_ps") chart.bands = stages(in);
   const std::vector<double> x = values_of(in.log, logged(clock.column));
+  const std::size_t within = rows_within(in.log, in.watched.limits);
+  if (within < x.size()) {
+    // A quantity that goes back and forth has no region of its own.
+    if (std::is_sorted(x.begin(), x.end())) chart.beyond = x[within];
+    chart.beyond_name = "beyond " + in.results.first_limit;
+  }
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
+    if (within < x.size()) line.beyond = within;
     for (std::size_t k = 0; (trace.half_width || !in.errors.empty()) && k < in.log.size(); ++k) {
       const ResultError e = in.errors.empty() ? ResultError{} : in.errors.of(k, trace.value);
       line.error.push_back(std::hypot(e.error, e.potential, trace.half_width ? trace.half_width(in.log[k]) : 0));
@@ -75,6 +82,14 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
     chart.lines.push_back(std::move(line));
   }
   return chart;
+}
+
+// The legend of what is dotted.
+std::string beyond_words_of(const ReportInput& in) {
+  const LimitRecord* first = first_limit(in.watched.limits);
+  return first && rows_within(in.log, in.watched.limits) < in.log.size()
+             ? fmt::format(" Dotted: beyond {}, {}.", escape_markup(first->key), since_words(*first))
+             : "";
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {
@@ -101,8 +116,8 @@ std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figur
       columns.push_back(
           {with_unit("half width of the band", panel.axis.unit), values_of(in.log, trace.half_width)});
   return fmt::format("<figure><h3>{}</h3>\n", escape_markup(panel.title)) + chart_svg(chart) +
-         figures.caption(panel.caption) + data_table(columns, "Every row and column is in log.csv.") +
-         "</figure>\n";
+         figures.caption(panel.caption + beyond_words_of(in)) +
+         data_table(columns, "Every row and column is in log.csv.") + "</figure>\n";
 }
 
 std::string pair_of(const std::string& a, const std::string& b) {

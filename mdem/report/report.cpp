@@ -168,8 +168,16 @@ std::string when(const ReportInput& in, std::size_t k, std::size_t n, double tim
   return k == 0 ? "start" : k + 1 == n ? "end" : "between";
 }
 
-std::string tag(const ReportInput& in, const std::string& when, double beta) {
-  return "<div class=\"tag\">" + when + (in.rope ? " &#160; β = " + degrees(beta) : "") + "</div>\n";
+bool is_beyond(const ReportInput& in, double time) {
+  const LimitRecord* first = first_limit(in.watched.limits);
+  return first && !clock_of(in.log).counts_steps() && time >= first->passed_at_ps;
+}
+
+std::string tag(const ReportInput& in, const std::string& when, double time, double beta) {
+  return "<div class=\"tag\">" + when + (in.rope ? " &#160; β = " + degrees(beta) : "") +
+         (is_beyond(in, time) ? " <span class=\"soft\">beyond " + escape_markup(in.results.first_limit) + "</span>"
+                              : "") +
+         "</div>\n";
 }
 
 // --- Radius along the rope ----------------------------------------------------------------------------------
@@ -183,7 +191,8 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
   std::vector<TableColumn> columns;
   for (std::size_t k = 0; k < sections.size(); ++k) {
     ChartLine line;
-    line.name = when(in, k, sections.size(), sections[k].time_ps);
+    line.name = clock_of(in.log).counts_steps() ? when(in, k, sections.size(), sections[k].time_ps)
+                                                : "at " + picoseconds(sections[k].time_ps);
     line.y = sections[k].radius_profile;
     for (std::size_t i = 0; i < line.y.size(); ++i) line.x.push_back(static_cast<double>(i) * in.element_length);
     line.colour = sequential_colour(k, sections.size());
@@ -220,7 +229,8 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
   std::string html = "<figure class=\"strip\"><div class=\"views\">\n";
   for (std::size_t k = 0; k < views.size(); ++k) {
     const std::string name = fmt::format("v{}t", static_cast<char>('a' + k));
-    html += "<div class=\"view\">" + tag(in, when(in, k, views.size(), views[k].time_ps), views[k].beta_deg);
+    html += "<div class=\"view\">" +
+            tag(in, when(in, k, views.size(), views[k].time_ps), views[k].time_ps, views[k].beta_deg);
     html += rope_picture(views[k], camera, in.tube_radius, name, k + 1 == views.size()) + "</div>\n";
   }
   std::string caption =
@@ -263,10 +273,11 @@ std::string sections_figure(const ReportInput& in, const std::vector<ReportSecti
   std::string html = fmt::format("<figure><div class=\"row{}\">\n", few ? " few" : "");
   for (std::size_t k = 0; k < sections.size(); ++k)
     if (!sections[k].section.points.empty())
-      html += "<div class=\"cut\">" +
-              section_picture(sections[k].section, in.shells, in.tube_radius, half, few ? 220 : 150) +
-              tag(in, when(in, k, sections.size(), sections[k].time_ps), sections[k].beta_deg) +
-              section_words(sections[k]) + "</div>\n";
+      html +=
+          "<div class=\"cut\">" +
+          section_picture(sections[k].section, in.shells, in.tube_radius, half, few ? 220 : 150) +
+          tag(in, when(in, k, sections.size(), sections[k].time_ps), sections[k].time_ps, sections[k].beta_deg) +
+          section_words(sections[k]) + "</div>\n";
   html += "</div><div class=\"keys\">" + key_of("n6", "internal, six neighbours") + key_of("n5", "five") +
           key_of("n7", "seven") + key_of("nx", "another number") + key_of("outermost", "outermost") + "</div>\n";
   return html +
@@ -306,30 +317,48 @@ std::string ending(const ReportInput& in) {
   return "How the run ended is not known" + reason + ".";
 }
 
+// Limits first, then what came of the run, then its end.
+std::string lead(const ReportInput& in) {
+  std::string html;
+  if (const std::string beyond = beyond_sentence(in.watched.limits); !beyond.empty()) {
+    html = "<b>" + escape_markup(beyond) + "</b> ";
+    if (beyond_limits(in.watched.limits) > far_beyond)
+      html += "<b>" + escape_markup(worst_words(in.watched.limits)) + ".</b> ";
+    html +=
+        "What comes after does not describe real tubes; it is dotted and hatched in the figures. "
+        "<a href=\"#limits\">Every limit that was passed</a>. ";
+  }
+  for (const std::string& sentence : result_sentences(in.results)) html += escape_markup(sentence) + " ";
+  return html;
+}
+
 // A summary in sentences. Quantities that the scene does not have are left out.
 std::string summary(const ReportInput& in) {
   if (in.log.empty()) return ending(in) + " Its log has no rows.";
   const LogRow& r = in.log.back();
   const Clock clock = clock_of(in.log);
+  const bool beyond = rows_within(in.log, in.watched.limits) < in.log.size();
+  const auto bold = [&](const std::string& value) { return beyond ? value : "<b>" + value + "</b>"; };
   std::string html = clock.counts_steps() ? fmt::format("After {} steps", fixed_text(r["step"], 0))
                                           : fmt::format("After {}", picoseconds(r["time_ps"]));
+  if (beyond) html += fmt::format(", beyond {},", escape_markup(in.results.first_limit));
   if (std::isfinite(r["beta_deg"]) && in.rope)
-    html += fmt::format(" the outermost tubes stand at <b>β = {}</b> to the axis of the rope, and",
-                        degrees(r["beta_deg"]));
+    html += fmt::format(" the outermost tubes stand at {} to the axis of the rope, and",
+                        bold("β = " + degrees(r["beta_deg"])));
   const double bonds = r["stretch_eV"] + r["shear_eV"] + r["bend_eV"] + r["twist_eV"];
-  html += fmt::format(" the bonds hold <b>{} eV</b> (stretch {}, shear {}, bend {}, twist {})", number_text(bonds),
-                      number_text(r["stretch_eV"], 3), number_text(r["shear_eV"], 3), number_text(r["bend_eV"], 3),
-                      number_text(r["twist_eV"], 3));
+  html += fmt::format(" the bonds hold {} (stretch {}, shear {}, bend {}, twist {})",
+                      bold(number_text(bonds) + " eV"), number_text(r["stretch_eV"], 3),
+                      number_text(r["shear_eV"], 3), number_text(r["bend_eV"], 3), number_text(r["twist_eV"], 3));
   for (const std::string& column : terms_in(in.log))
-    html += fmt::format(", {} <b>{} eV</b>", term_of(column), number_text(r[column], 3));
-  if (in.tubes > 1) html += fmt::format(", the van der Waals contacts <b>{} eV</b>", number_text(r["vdw_eV"]));
+    html += fmt::format(", {} {}", term_of(column), bold(number_text(r[column], 3) + " eV"));
+  if (in.tubes > 1) html += fmt::format(", the van der Waals contacts {}", bold(number_text(r["vdw_eV"]) + " eV"));
   html += fmt::format(". The kinetic energy is {} eV, the total {} eV.", number_text(r["kinetic_eV"], 3),
                       number_text(total_energy(r)));
   if (in.rope && any_internal(in.shells))
     html += fmt::format(
-        " The packing charge of the middle section is <b>Q = {}</b> by distance, {} by Delaunay "
-        "triangulation.",
-        fixed_text(r["Q"], 0), fixed_text(r["Q_delaunay"], 0));
+        " The packing charge of the middle section, Q, the sum of its five-fold (+1) and seven-fold (−1) defects, "
+        "is {} by distance, {} by Delaunay triangulation.",
+        bold("Q = " + fixed_text(r["Q"], 0)), fixed_text(r["Q_delaunay"], 0));
   return html + " " + ending(in);
 }
 
@@ -379,10 +408,14 @@ std::string limit_words(const ReportInput& in, const Limit& limit) {
 
 std::string passed_words(const LimitRecord& r) {
   const std::string unit = r.unit.empty() ? "" : " " + escape_markup(r.unit);
+  const std::string first = place_words(r);
   const std::string place = r.tube >= 0 ? fmt::format(", tube {}, element {}", r.tube, r.element) : "";
-  return fmt::format("<li><b>limits.{}</b>, {}{}: passed at {}; largest {}{} at {}{}.</li>\n", escape_markup(r.key),
-                     number_text(r.limit), unit, picoseconds(r.passed_at_ps), number_text(r.largest), unit,
-                     picoseconds(r.largest_at_ps), place);
+  return fmt::format(
+      "<li><b>limits.{}</b>, {}{}: passed at {}{}; largest {}{} at {}{}. <code>ropewalk help {}</code> says what "
+      "that means and what to change.</li>\n",
+      escape_markup(r.key), number_text(r.limit), unit, picoseconds(r.passed_at_ps),
+      first.empty() ? "" : ", " + escape_markup(first), number_text(r.largest), unit, picoseconds(r.largest_at_ps),
+      place, escape_markup(r.key));
 }
 
 std::string limits_part(const ReportInput& in) {
@@ -397,7 +430,7 @@ std::string limits_part(const ReportInput& in) {
     if (std::isfinite(r["largest_bond_twist_deg"])) twist = std::max(twist, r["largest_bond_twist_deg"]);
   html += fmt::format(
       "<li>Largest twist of one bond: {}. The torque of a bond peaks at 90°, and beyond it the bond "
-      "would slip.</li>\n",
+      "would slip, or, with [failure], breaks.</li>\n",
       degrees(twist));
   for (const LimitRecord& r : in.watched.limits)
     if (r.passed) html += passed_words(r);
@@ -503,6 +536,18 @@ std::string observables_part(const std::vector<LogRow>& log) {
                       : html + "<p class=\"soft\">Zero, or without a value, in all rows: " + zero + ".</p>\n";
 }
 
+// Those of the scene behind the limits that the run passed.
+std::vector<std::string> all_warnings(const ReportInput& in) {
+  std::vector<std::string> all;
+  for (const LimitRecord& r : in.watched.limits)
+    if (r.passed)
+      all.push_back(fmt::format("{}: limit {}, reached {}{}, beyond it {}{}.", r.key, number_text(r.limit),
+                                number_text(r.largest), r.unit.empty() ? "" : " " + r.unit, since_words(r),
+                                r.passed_tube < 0 ? "" : ", first in " + place_words(r)));
+  all.insert(all.end(), in.warnings.begin(), in.warnings.end());
+  return all;
+}
+
 // --- The page -----------------------------------------------------------------------------------------------
 
 std::string log_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
@@ -546,14 +591,16 @@ std::string report_html(const ReportInput& in) {
   const std::vector<ReportSection> sections = some(in.sections);
   std::string html = page_head(in.name) +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: report on a run</p>\n<h1>" +
-                     escape_markup(in.name) + "</h1>\n<p class=\"lead\">" + summary(in) + "</p>\n";
-  html += warnings_part(in.warnings);
+                     escape_markup(in.name) + "</h1>\n";
+  if (const std::string first = lead(in); !first.empty()) html += "<p class=\"lead\">" + first + "</p>\n";
+  html += "<p class=\"lead\">" + summary(in) + "</p>\n";
+  html += warnings_part(all_warnings(in));
   html += heading(in.rope ? "The rope" : in.tubes == 1 ? "The tube" : "The tubes") + views_figure(in, figures);
   html += paragraph(in.in_space ? "<a href=\"view.html\">In space</a>: turn it, play it, cut through it."
                                 : "<code>ropewalk view</code> makes a page that shows the run in space.");
   if (in.rope) html += heading("Cross-sections") + sections_part(in, sections, figures);
   html += log_part(in, sections, figures);
-  html += heading("Beyond the limits of the model") + limits_part(in);
+  html += "<a id=\"limits\"></a>" + heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);
   if (!in.error_bars.empty() || !in.errors.empty()) html += heading("Error bars");
   html += carried_errors(in);

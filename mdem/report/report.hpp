@@ -7,6 +7,7 @@
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/run_errors.hpp"
+#include "io/run_results.hpp"
 #include "model/parameters.hpp"
 #include "observe/observe.hpp"
 #include "report/page.hpp"
@@ -50,6 +51,7 @@ struct ReportInput {
   std::vector<ReportLoading> loading;  // in the order of time
   Validity validity;
   LimitsFile watched;  // empty if the run has no limits.json
+  RunResults results;
 
   RopeShells shells;                    // of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown

@@ -580,8 +580,8 @@ std::string bar_at(double moment_eV, double x, double y, const char* ink) {
   for (const int k : {0, 1, 2})
     text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" fill=\"{}\">{}{}</text>",
                         x + 0.5 * k * moment_colours * step, y + 24, ink, k == 2 ? "≥ " : "",
-                        number_text(0.5 * k * moment_eV, 2));
-  return text + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">bending moment (eV)</text>\n",
+                        number_text(0.5 * k * moment_eV / units::nN_nm, 2));
+  return text + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">bending moment (nN nm)</text>\n",
                             x + moment_colours * step + 34, y + 10, ink);
 }
 

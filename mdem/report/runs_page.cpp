@@ -63,6 +63,7 @@ ScatterChart chart_of(const std::vector<RunCurve>& runs, const RunsFigure& figur
   for (std::size_t k = 0; k < runs.size(); ++k) {
     ChartLine line{label_of(runs, k), values_of(runs[k].log, x), values_of(runs[k].log, y),
                    colour_of(k, runs.size())};
+    line.beyond = rows_within(runs[k].log, runs[k].limits);
     if (!runs[k].error.empty() && !figure.y_decades) line.error = values_of(runs[k].error, y);
     for (const double v : line.x)
       if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
@@ -115,11 +116,16 @@ std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
+  for (const OutputColumn& c : limit_columns()) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
   for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
   html += "<th></th></tr></thead><tbody>\n";
   std::size_t k = 0;
   for (const RunCurve& run : runs) {
     html += fmt::format("<tr><td>{}</td><th>{}</th><td>{}</td>", ++k, escape_markup(run.name), run.log.size());
+    const LimitRecord* first = first_limit(run.limits);
+    html += first
+                ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
+                : "<td>–</td><td>–</td>";
     for (const std::string& c : columns) {
       const double value = run.log.back()[c], error = run.error.empty() ? nan : run.error.back()[c];
       html += "<td>" + (std::isfinite(value) ? measured_text(value, error) : std::string("–")) + "</td>";
@@ -140,7 +146,7 @@ RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& all) 
   std::vector<std::vector<LogRow>> logs = all;
   for (std::vector<LogRow>& log : logs)
     if (relaxed) log = {log.back()};
-  RunCurve curve{std::move(name), logs.front(), {}, logs.size(), "", {}, 0};
+  RunCurve curve{std::move(name), logs.front(), {}, logs.size(), "", {}, {}, 0};
   std::size_t rows = logs.front().size(), most = 0;
   for (const auto& log : logs) {
     rows = std::min(rows, log.size());
@@ -174,6 +180,8 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
   std::string html = page_head(title) +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: runs side by side</p>\n<h1>" +
                      escape_markup(title) + "</h1>\n" + first;
+  const bool beyond = std::any_of(runs.begin(), runs.end(),
+                                  [](const RunCurve& r) { return rows_within(r.log, r.limits) < r.log.size(); });
   const bool replicated = std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.replicates > 1; });
   html +=
       paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",
@@ -191,6 +199,7 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
         svg.empty() ? not_drawn(column_axis(column).quantity)
                     : "<figure>" + title_text + svg +
                           figures.caption(escape_markup(meaning) + "." +
+                                          (beyond ? " Dotted: beyond the first limit of the run." : "") +
                                           (replicated ? " Bands: one standard error to either side." : "")) +
                           data_table(table_of(runs, figure.x, column), "Every row is in the logs.") + "</figure>\n";
     if (open.empty()) {
@@ -213,13 +222,13 @@ std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure
   const std::vector<std::string> columns = columns_of(runs, figure);
   std::string text = "run,replicates," + figure.x;
   for (const std::string& c : columns) text += fmt::format(",{},{}_standard_error", c, c);
-  text += "\n";
+  text += "," + column_names(limit_columns()) + "\n";
   for (const RunCurve& run : runs)
     for (std::size_t r = 0; r < run.log.size(); ++r) {
       text += fmt::format("\"{}\",{},{:.8g}", run.name, run.replicates, run.log[r][figure.x]);
       for (const std::string& c : columns)
         text += fmt::format(",{:.8g},{:.3g}", run.log[r][c], run.error.empty() ? nan : run.error[r][c]);
-      text += "\n";
+      text += "," + limit_cells(run.limits) + "\n";
     }
   return text;
 }

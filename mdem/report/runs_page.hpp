@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/log.hpp"
+#include "io/run_results.hpp"
 #include "report/page.hpp"
 #include "report/svg.hpp"
 
@@ -17,9 +17,10 @@ struct RunCurve {
   std::vector<LogRow> log;
   std::vector<LogRow> error;  // standard error of the mean, row by row; empty: a single run
   std::size_t replicates = 1;
-  std::string remark;                 // how it ended
-  std::optional<RopeView> view = {};  // of the last frame, of the first replicate
-  double tube_radius = 0;             // nm
+  std::string remark;                    // how it ended
+  std::vector<LimitRecord> limits = {};  // of the run, or of the replicate that passed a limit first
+  std::optional<RopeView> view = {};     // of the last frame, of the first replicate
+  double tube_radius = 0;                // nm
 };
 
 // Whether no time passes in its rows, as in the log of a relaxation.

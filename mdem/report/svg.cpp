@@ -118,14 +118,16 @@ Scale decades_of(const AxisRange& range) {
   Scale s;
   s.range = range;
   s.decades = true;
-  const std::vector<double> parts = range.span() < 2.5 ? std::vector<double>{1, 2, 5} : std::vector<double>{1};
+  const std::vector<double> parts = range.span() < 0.8   ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}
+                                    : range.span() < 2.5 ? std::vector<double>{1, 2, 5}
+                                                         : std::vector<double>{1};
   const int every = std::max(1, static_cast<int>(range.span() / 6));
   for (int k = static_cast<int>(std::floor(range.low)); k <= range.high; k += every)
     for (const double part : parts) {
       const double at = k + std::log10(part);
       if (at < range.low || at > range.high) continue;
       s.ticks.push_back(at);
-      s.labels.push_back(number_text(part * std::pow(10.0, k), 1));
+      s.labels.push_back(number_text(part * std::pow(10.0, k), 2));
     }
   return s;
 }
@@ -141,6 +143,11 @@ AxisRange y_range(AxisRange r, bool whole) {
   const bool from_zero = r.low >= 0 && r.low < 0.35 * r.high;
   const bool to_zero = r.high <= 0 && r.high > 0.35 * r.low;
   return {from_zero ? 0 : r.low - air, to_zero ? 0 : r.high + air};
+}
+
+AxisRange with_zero(AxisRange r) {
+  r.take(0);
+  return r;
 }
 
 AxisRange with_air(const AxisRange& r) {
@@ -242,6 +249,23 @@ std::string path_of(const Plot& plot, const ChartLine& line) {
     }
   }
   return d;
+}
+
+std::string stroke_class(const ChartLine& line) {
+  return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
+}
+
+// The line as far as the model holds, and what comes behind.
+std::string draw_in_two(const ChartLine& line, const Plot& plot) {
+  ChartLine within = line, behind = line;
+  const auto cut = [](std::vector<double>& v, std::size_t from, std::size_t to) {
+    v = {v.begin() + static_cast<std::ptrdiff_t>(std::min(from, v.size())),
+         v.begin() + static_cast<std::ptrdiff_t>(std::min(to, v.size()))};
+  };
+  for (auto* v : {&within.x, &within.y}) cut(*v, 0, line.beyond);
+  for (auto* v : {&behind.x, &behind.y}) cut(*v, line.beyond > 0 ? line.beyond - 1 : 0, v->size());
+  return fmt::format("<path class=\"{} beyond\" d=\"{}\"/>\n<path class=\"{}\" d=\"{}\"/>\n", stroke_class(line),
+                     path_of(plot, behind), stroke_class(line), path_of(plot, within));
 }
 
 // Bars of the line's errors with a tick at each end, and a dot at each of its points.
@@ -385,10 +409,6 @@ std::vector<EndLabel> end_labels(const LineChart& chart, const Plot& plot) {
   return labels;
 }
 
-std::string stroke_class(const ChartLine& line) {
-  return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
-}
-
 struct Box {
   double left, right, top, bottom;
 
@@ -530,8 +550,9 @@ Plot layout(const ScatterChart& scatter) {
     for (const Stretch& s : stretches(line))
       for (const PagePoint& p : s) y.take(p.y);
   plot.x = scatter.chart.x.decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
-  plot.y =
-      scatter.chart.y.decades ? decades_of(with_air(y)) : scale_of(y_range(y, chart.y.whole), 5, chart.y.whole);
+  plot.y = scatter.chart.y.decades
+               ? decades_of(with_air(y))
+               : scale_of(y_range(chart.y.from_zero ? with_zero(y) : y, chart.y.whole), 5, chart.y.whole);
   double ticks = 0, names = 0;
   for (const std::string& label : plot.y.labels) ticks = std::max(ticks, text_width(label));
   for (const ChartLine& line : chart.lines)
@@ -558,6 +579,29 @@ std::string draw_bands(const LineChart& chart, const Plot& plot) {
     text += "\n";
   }
   return text;
+}
+
+// Hatched from chart.beyond on, by lines that each program draws.
+std::string draw_beyond(const LineChart& chart, const Plot& plot) {
+  if (!std::isfinite(chart.beyond) || !(chart.beyond < plot.x.range.high)) return "";
+  constexpr double apart = 9;
+  const double from = plot.px(std::max(chart.beyond, plot.x.range.low)), high = plot.bottom - plot.top;
+  std::string lines;
+  for (double x = from - std::fmod(from - plot.left, apart) - high; x < plot.right; x += apart) {
+    const double left = std::max(x, from), right = std::min(x + high, plot.right);
+    if (right > left)
+      lines += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", left, plot.bottom - (left - x), right,
+                           plot.bottom - (right - x));
+  }
+  std::string text =
+      fmt::format("<path class=\"hatch\" d=\"{}\"/><path class=\"edge\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", lines, from,
+                  plot.top, plot.bottom);
+  // Beside the edge, on the side with more room.
+  const bool right = plot.right - from > from - plot.left;
+  if (text_width(chart.beyond_name) + 8 < std::max(plot.right - from, from - plot.left))
+    text += fmt::format("<text class=\"soft halo{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", right ? "" : " end",
+                        right ? from + 5 : from - 5, plot.top + 12, escape_markup(chart.beyond_name));
+  return text + "\n";
 }
 
 std::string draw_axes(const LineChart& chart, const Plot& plot) {
@@ -655,6 +699,8 @@ font-variant-numeric:tabular-nums;max-width:100%;height:auto}
 .halo{paint-order:stroke;stroke:var(--paper);stroke-width:2.5px}
 .key{vertical-align:-3px}
 .dashed{stroke-dasharray:5 3.5;stroke-linecap:butt}
+.beyond{opacity:.5;stroke-dasharray:.1 3.4}
+.hatch{stroke:var(--grid);stroke-width:1;fill:none}.edge{stroke:var(--soft);stroke-width:.8;stroke-dasharray:2 2;fill:none}
 .n5{fill:#d7352f}.n7{fill:#2b6cc4}.nx{fill:#e0a010}.n6{fill:#6b7078}.outermost{fill:#d4d7dc}
 .section circle{stroke:#4a4e55;stroke-width:.5}
 )";
@@ -679,18 +725,23 @@ std::string scatter_svg(const ScatterChart& drawn) {
       "<svg class=\"chart\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">\n",
       chart.width, chart.height, escape_markup(chart.title));
-  text += draw_bands(chart, plot) + draw_axes(chart, plot) + draw_errors(chart, plot) + draw_regions(chart, plot) +
-          draw_areas(chart, plot);
+  text += draw_bands(chart, plot) + draw_beyond(chart, plot) + draw_axes(chart, plot) + draw_errors(chart, plot) +
+          draw_regions(chart, plot) + draw_areas(chart, plot);
   for (std::size_t l = 0; l < chart.lines.size(); ++l) {
     const ChartLine& line = chart.lines[l];
     if (line.filled) continue;
     if (line.points && l < scatter.styles.size())
       text += draw_marks(line, scatter.styles[l], plot);
+    else if (line.beyond < line.x.size())
+      text += draw_in_two(line, plot);
     else
       text +=
           fmt::format("<path class=\"{}{}\" d=\"{}\"/>\n", stroke_class(line),
                       l < scatter.styles.size() && scatter.styles[l].faint ? " faint" : "", path_of(plot, line));
   }
+  if (!chart.note.empty())
+    text += fmt::format("<text class=\"soft halo end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", plot.right - 6,
+                        plot.bottom - 7, escape_markup(chart.note));
   return text + draw_point_labels(scatter, plot) + draw_labels(chart, plot) + "</svg>\n";
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,8 @@ struct ChartLine {
   std::vector<double> error = {};
   bool bars = false;    // the errors are bars at its points instead
   bool filled = false;  // an area that the line goes round, with its name at the centre
+  // From this point on the line is pale and dotted: the run is beyond its model there.
+  std::size_t beyond = std::numeric_limits<std::size_t>::max();
 };
 
 struct ChartBand {
@@ -60,6 +63,7 @@ struct ChartAxis {
   std::string quantity, unit;  // the unit may be empty
   bool whole = false;          // ticks at integers only
   bool decades = false;        // the axis is logarithmic, and the chart omits points that are not positive
+  bool from_zero = false;      // 0 is on the axis, so that differences look as large as they are
 };
 
 struct LineChart {
@@ -70,6 +74,10 @@ struct LineChart {
   double width = 540, height = 290;  // user units: pixels at full size
   // Names of the fields below and above all whole lines, "stable" and "unstable"; the lower one is shaded.
   std::string below = {}, above = {};
+  // From here to the right the chart is hatched, under the name that stands at the top; NaN: nowhere.
+  double beyond = std::numeric_limits<double>::quiet_NaN();
+  std::string beyond_name = {};
+  std::string note = {};  // in the lower right corner
 };
 
 // False if no line has two finite points at different x.

@@ -1,37 +1,13 @@
 #include "report/tensile.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
-
-#include "model/units.hpp"
-#include "report/log_figures.hpp"
-#include "report/scatter.hpp"
 
 namespace ropewalk {
 namespace {
 
 constexpr double slack_stress = 0.1, half_stress = 0.5;  // of the largest
-
-struct Mean {
-  double value = NAN, error = NAN;
-};
-
-template <class Value>
-Mean mean_of(const std::vector<TensileTest>& tests, Value value) {
-  double sum = 0, squares = 0;
-  int n = 0;
-  for (const TensileTest& t : tests)
-    if (std::isfinite(value(t))) sum += value(t), ++n;
-  if (n == 0) return {};
-  const double mean = sum / n;
-  for (const TensileTest& t : tests)
-    if (std::isfinite(value(t))) squares += std::pow(value(t) - mean, 2);
-  return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : NAN};
-}
 
 struct TensileQuantity {
   OutputColumn column;
@@ -53,15 +29,6 @@ const TensileQuantity tensile_quantities[] = {
     {{"breaks_within_nm", "nm", "between the quartiles of these heights"}, &TensileTest::breaks_within},
 };
 
-int followed(const TensileGroup& group) {
-  return static_cast<int>(
-      std::count_if(group.tests.begin(), group.tests.end(), [](const TensileTest& t) { return t.to_half; }));
-}
-
-Mean before_pull(const TensileGroup& group, const std::string& x) {
-  return mean_of(group.tests, [&](const TensileTest& t) { return t.before[x]; });
-}
-
 // Slope of the least squares line through the rows [from, to].
 double slope_of(const std::vector<LogRow>& log, std::size_t from, std::size_t to) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -73,49 +40,12 @@ double slope_of(const std::vector<LogRow>& log, std::size_t from, std::size_t to
   return spread > 0 ? (n * xy - x * y) / spread : NAN;
 }
 
-double quantile(const std::vector<double>& sorted, double part) {
+double height_quantile(const std::vector<double>& sorted, double part) {
   if (sorted.empty()) return NAN;
   const double at = part * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-// The line of strength over x, and, over an angle, cos^2 of it from the first point on.
-ScatterChart chart_of(const std::vector<TensileGroup>& groups, const std::string& x) {
-  ScatterChart scatter;
-  LineChart& chart = scatter.chart;
-  chart.title = "Strength against " + column_axis(x).quantity;
-  chart.x = column_axis(x);
-  chart.y = {"strength", "GPa", false};
-  chart.height = 360;
-  for (const TensileGroup& g : groups) {
-    auto line =
-        std::find_if(chart.lines.begin(), chart.lines.end(), [&](const ChartLine& l) { return l.name == g.line; });
-    if (line == chart.lines.end()) {
-      chart.lines.push_back({g.line, {}, {}, static_cast<int>(chart.lines.size()) % categorical_colours});
-      line = chart.lines.end() - 1;
-      line->bars = true;
-    }
-    const Mean at = before_pull(g, x), strength = mean_of(g.tests, std::mem_fn(&TensileTest::strength));
-    line->x.push_back(at.value);
-    line->y.push_back(strength.value);
-    line->error.push_back(strength.error);
-  }
-  if (x != "beta_deg") return scatter;
-  const std::vector<ChartLine> measured = chart.lines;
-  for (const ChartLine& line : measured) {
-    if (line.x.size() < 2) continue;
-    ChartLine law{&line == &measured.front() ? "cos²" : "", {}, {}, line.colour, true};
-    const double straight = line.y.front() / std::pow(std::cos(line.x.front() * units::degree), 2);
-    const double most = *std::max_element(line.x.begin(), line.x.end());
-    for (int k = 0; k <= 40; ++k) {
-      law.x.push_back(line.x.front() + k * (most - line.x.front()) / 40);
-      law.y.push_back(straight * std::pow(std::cos(law.x.back() * units::degree), 2));
-    }
-    chart.lines.push_back(law);
-  }
-  return scatter;
 }
 
 }  // namespace
@@ -152,68 +82,31 @@ TensileTest tensile_test(const std::vector<LogRow>& log, std::vector<double> hei
   t.links_broken = log.back()["links_broken"];
   t.bonds_broken = log.back()["bonds_broken"];
   std::sort(heights_of_breaks.begin(), heights_of_breaks.end());
-  t.breaks_at = quantile(heights_of_breaks, 0.5);
-  t.breaks_within = quantile(heights_of_breaks, 0.75) - quantile(heights_of_breaks, 0.25);
+  t.breaks_at = height_quantile(heights_of_breaks, 0.5);
+  t.breaks_within = height_quantile(heights_of_breaks, 0.75) - height_quantile(heights_of_breaks, 0.25);
   return t;
 }
 
-std::vector<OutputColumn> tensile_columns() {
-  std::vector<OutputColumn> out;
-  for (const TensileQuantity& q : tensile_quantities) out.push_back(q.column);
+LoadTest load_test(const TensileTest& test) {
+  LoadTest out{test.before, {}, test.to_half};
+  for (const TensileQuantity& q : tensile_quantities) out.values.push_back(test.*q.value);
   return out;
 }
 
-std::string tensile_csv(const std::vector<TensileGroup>& groups, const std::string& x) {
-  std::string text = "run,replicates,to_half," + x;
-  for (const TensileQuantity& q : tensile_quantities) text += fmt::format(",{0},{0}_standard_error", q.column.name);
-  text += "\n";
-  for (const TensileGroup& g : groups) {
-    text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), before_pull(g, x).value);
-    for (const TensileQuantity& q : tensile_quantities) {
-      const Mean m = mean_of(g.tests, std::mem_fn(q.value));
-      text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-std::string tensile_svg(const std::vector<TensileGroup>& groups, const std::string& x) {
-  return chart_file(chart_of(groups, x));
-}
-
-std::string tensile_part(const std::vector<TensileGroup>& groups, const std::string& x, const std::string& lines,
-                         Figures& figures) {
-  std::string html =
-      heading("Strength") +
-      paragraph(
-          "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is counted "
-          "until "
-          "the stress has fallen to half of its largest value; \"to half\" says in how many runs it has.") +
-      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
-      escape_markup(column_axis(x).quantity) + "</th>";
-  for (const TensileQuantity& q : tensile_quantities)
-    html += fmt::format("<th title=\"{}\">{}</th>", q.column.meaning, q.column.name);
-  html += "</tr></thead><tbody>\n";
-  for (const TensileGroup& g : groups) {
-    const auto cell = [&](const Mean& m) {
-      html += "<td>" + (std::isfinite(m.error) ? measured_text(m.value, m.error) : number_text(m.value)) + "</td>";
-    };
-    html += fmt::format("<tr><th>{}</th><td>{} of {}</td>", escape_markup(g.name), followed(g), g.tests.size());
-    cell(before_pull(g, x));
-    for (const TensileQuantity& q : tensile_quantities) cell(mean_of(g.tests, std::mem_fn(q.value)));
-    html += "</tr>\n";
-  }
-  html += "</tbody></table></div>\n";
-  const std::string svg = scatter_svg(chart_of(groups, x));
-  if (svg.empty()) return html;
-  std::string caption =
-      "Largest stress. Bars: one standard error to either side, over runs that differ in their seed.";
-  if (!lines.empty()) caption += " Lines: " + escape_markup(lines) + ".";
-  if (x == "beta_deg")
-    caption += " Dashed: the law of yarns of long fibres, cos² of the angle of the outermost tubes.";
-  return html + "<figure><h3>Strength against " + escape_markup(column_axis(x).quantity) + "</h3>\n" + svg +
-         figures.caption(caption) + "</figure>\n";
+const LoadTestKind& tensile_kind() {
+  static const LoadTestKind kind = [] {
+    LoadTestKind k{
+        "Strength",
+        "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is counted "
+        "until the stress has fallen to half of its largest value; \"to half\" says in how many runs it has.",
+        "strength",
+        "GPa",
+        {},
+        true};
+    for (const TensileQuantity& q : tensile_quantities) k.columns.push_back(q.column);
+    return k;
+  }();
+  return kind;
 }
 
 }  // namespace ropewalk

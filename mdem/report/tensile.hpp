@@ -1,12 +1,11 @@
-// Ropes that were pulled: what a testing machine tells of each, with means and errors over replicates.
+// Ropes that were pulled: what a testing machine tells of each.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "io/log.hpp"
-#include "io/outputs.hpp"
-#include "report/page.hpp"
+#include "report/load_tests.hpp"
 
 namespace ropewalk {
 
@@ -30,22 +29,7 @@ struct TensileTest {
 // `heights_of_breaks`: nm, in any order. Throws std::invalid_argument where nothing pulls in the log.
 TensileTest tensile_test(const std::vector<LogRow>& log, std::vector<double> heights_of_breaks);
 
-// Runs that differ in their seed alone.
-struct TensileGroup {
-  std::string name;
-  std::string line;  // groups with the same text are points of one line
-  std::vector<TensileTest> tests;
-};
-
-// Columns of the table behind run, replicates, to_half and --x; each but these is followed by its standard error.
-std::vector<OutputColumn> tensile_columns();
-std::string tensile_csv(const std::vector<TensileGroup>& groups, const std::string& x);
-// Strength over the column `x` of the log, in the row in which the pull begins; over beta_deg with the cos^2 of
-// that angle, which is the law of yarns of long fibres (J. W. S. Hearle, P. Grosberg, S. Backer, Structural
-// Mechanics of Fibers, Yarns, and Fabrics, Wiley 1969). Empty: no line has two points.
-std::string tensile_svg(const std::vector<TensileGroup>& groups, const std::string& x);
-// The part of a page: the table and that chart. `lines`: what the names of the lines are, "tube_length_nm, per_nm".
-std::string tensile_part(const std::vector<TensileGroup>& groups, const std::string& x, const std::string& lines,
-                         Figures& figures);
+LoadTest load_test(const TensileTest& test);
+const LoadTestKind& tensile_kind();
 
 }  // namespace ropewalk

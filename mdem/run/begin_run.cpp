@@ -57,6 +57,21 @@ std::string device_of(const RunOrigin& origin, const std::string& asked_for, Run
   return asked_for;
 }
 
+Scene with_own(Scene scene, const RunSettings& asked) {
+  scene.drives.insert(scene.drives.end(), asked.own_drives.begin(), asked.own_drives.end());
+  return scene;
+}
+
+// No file has a force of one's own: who resumes has to give it again.
+void refuse_other_forces(const RunOrigin& origin, const ResumeSettings& asked) {
+  if (origin.own_forces == own_forces_of(asked)) return;
+  const auto words = [](const std::string& count) { return count.empty() ? "none" : count; };
+  throw InputError({"", 0, "forces"},
+                   fmt::format("the run was begun with {} of one's own, in Python, and would go on with {}",
+                               words(origin.own_forces), words(own_forces_of(asked))),
+                   "give the same to ropewalk.resume(DIR, forces=...)");
+}
+
 // Leaves no part of a run that has no checkpoint, as far as the disk lets it.
 void give_up(const RunDirectory& dir, std::unique_ptr<Run> run, bool keep_directory) {
   try {
@@ -72,7 +87,7 @@ void give_up(const RunDirectory& dir, std::unique_ptr<Run> run, bool keep_direct
 
 std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, const RunSettings& asked,
                                RunListener& listener) {
-  auto run = std::make_unique<Run>(dir, scene, asked, listener);
+  auto run = std::make_unique<Run>(dir, with_own(scene, asked), asked, listener);
   run->check_before_start();
   run->end_at(asked.steps, asked.until_ps);
   listener.before_files();
@@ -106,6 +121,7 @@ std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& a
   remove_run_parts(dir);
   check_log_header(dir.log());
   ResumePoint point = find_resume_point(dir);
+  refuse_other_forces(point.checkpoint.origin, asked);
   use_instructions_of(point.checkpoint.origin, asked.instructions, listener);
   const Scene scene = read_run_scene(dir);
   RunOrigin origin = origin_of(dir, scene);
@@ -118,7 +134,7 @@ std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& a
   if (point.path != dir.checkpoint()) std::filesystem::remove(dir.checkpoint());
   ResumeSettings settings = asked;
   settings.device = device_of(point.checkpoint.origin, asked.device, listener);
-  auto run = std::make_unique<Run>(dir, scene, settings, listener);
+  auto run = std::make_unique<Run>(dir, with_own(scene, asked), settings, listener);
   run->hold(std::move(lock));
   run->restore(std::move(point.checkpoint));
   run->end_at(asked.steps, asked.until_ps);

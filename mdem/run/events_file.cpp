@@ -60,6 +60,20 @@ std::vector<double> heights_of_breaks(const std::string& path) {
   return heights;
 }
 
+bool is_break(const TermEvent& event) { return event.what == std::string("tube broke") && event.time > 0; }
+
+std::vector<TubeBreak> tube_breaks(const std::string& path) {
+  std::vector<TubeBreak> out;
+  each_event(path, [&](CsvReader& csv, const std::string& what) {
+    if (what != "tube broke") return;
+    const double tube = csv.finite_number(2, "tube"), element = csv.finite_number(3, "element");
+    if (!(tube >= 0 && tube < 1e9) || !(element >= 0 && element < 1e9))
+      csv.fail("tube", "is no tube of a scene", "bring the line back");
+    out.push_back({csv.finite_number(0, "time_ps"), static_cast<int>(tube), static_cast<int>(element)});
+  });
+  return out;
+}
+
 StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : topology_(topology) {
   // The number of an element that the cells from `cell` on name.
   const auto element_at = [&](CsvReader& csv, std::size_t cell, const char* tube_name, const char* element_name,

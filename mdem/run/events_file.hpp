@@ -6,12 +6,19 @@
 #include <vector>
 
 #include "io/outputs.hpp"
+#include "io/run_results.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 
 std::vector<OutputColumn> event_columns();
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events);
+
+// Of a tube, since the start.
+bool is_break(const TermEvent& event);
+
+// The bonds of tubes that broke; none where there is no file. Throws InputError where a line is not right.
+std::vector<TubeBreak> tube_breaks(const std::string& path);
 
 // nm, of the links and tubes that broke; none where there is no file. Throws InputError where a line is not right.
 std::vector<double> heights_of_breaks(const std::string& path);

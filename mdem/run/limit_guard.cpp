@@ -7,14 +7,16 @@
 
 namespace ropewalk {
 
-LimitGuard::LimitGuard(OnLimit on_limit, const MovingScene& moving, const RunSchedule& schedule, RunFiles& files,
-                       RunListener& listener)
+LimitGuard::LimitGuard(OnLimit on_limit, bool may_refine, const MovingScene& moving, const RunSchedule& schedule,
+                       RunFiles& files, RunListener& listener)
     : on_limit_(on_limit),
       moving_(moving),
       schedule_(schedule),
       files_(files),
       listener_(listener),
-      watch_(watched_by_run(moving.scene, moving.prepared, moving.observer)) {}
+      watch_(watched_by_run(moving.scene, moving.prepared, moving.observer),
+             may_refine && on_limit != OnLimit::refine &&
+                 why_not_finer(moving.scene, moving.prepared.topology).empty()) {}
 
 void LimitGuard::check_before_start() const {
   if (on_limit_ != OnLimit::refine) return;

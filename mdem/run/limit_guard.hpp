@@ -12,8 +12,9 @@ namespace ropewalk {
 
 class LimitGuard {
  public:
-  LimitGuard(OnLimit on_limit, const MovingScene& moving, const RunSchedule& schedule, RunFiles& files,
-             RunListener& listener);
+  // `may_refine`: whether who runs it could give --on-limit refine.
+  LimitGuard(OnLimit on_limit, bool may_refine, const MovingScene& moving, const RunSchedule& schedule,
+             RunFiles& files, RunListener& listener);
 
   // Throws InputError where elements are to be split and cannot be.
   void check_before_start() const;
@@ -31,6 +32,7 @@ class LimitGuard {
   // Whether a limit that was passed, and only said, may be cured now.
   bool would_refine() const;
   const std::vector<LimitRecord>& records() const { return watch_.records(); }
+  const std::vector<Held>& held() const { return watch_.held(); }
   LimitsFile file() const { return {watch_.records(), refinements_}; }
   void write() { files_.write_limits(file()); }
 

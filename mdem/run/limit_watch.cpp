@@ -13,15 +13,15 @@ namespace {
 // "deg" with a space before it; nothing for numbers without a unit.
 std::string with_space(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
-std::string line_of(const LimitKind& kind, const Topology& topology, const Peak& peak, double time) {
-  std::string place;
-  if (!kind.whole) {
-    const int tube = topology.tube_of(peak.element);
-    place = fmt::format(", tube {}, element {}", tube, peak.element - topology.tube_begin[tube]);
-  }
-  return fmt::format("limit passed at {:.4g} ps{}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}", time, place,
-                     kind.what, peak.value / kind.unit_size, with_space(kind.unit), kind.key,
-                     peak.limit / kind.unit_size, kind.consequence, kind.remedy);
+// It ends with the heading of docs/limits.md, which `help` prints.
+std::string line_of(const LimitKind& kind, const std::string& place, const Peak& peak, double time,
+                    bool may_refine) {
+  return fmt::format(
+      "limit passed at {:.4g} ps{}{}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}{}; see ropewalk "
+      "help {}",
+      time, place.empty() ? "" : ", ", place, kind.what, peak.value / kind.unit_size, with_space(kind.unit),
+      kind.key, peak.limit / kind.unit_size, kind.consequence, kind.remedy,
+      kind.cured_by_finer && may_refine ? ", or --on-limit refine" : "", kind.key);
 }
 
 }  // namespace
@@ -77,7 +77,10 @@ std::vector<std::string> LimitWatch::check(const Topology& topology, const Topol
     r.passed = true;
     r.passed_at_ps = state.time;
     r.passed_at_step = state.step;
-    lines.push_back(line_of(kind, topology, peak, state.time));
+    r.passed_tube = kind.whole ? -1 : topology.tube_of(peak.element);
+    r.passed_element = kind.whole ? -1 : peak.element - topology.tube_begin[r.passed_tube];
+    r.passed_held_by = kind.whole ? "" : holder_in_words(topology, watched_.held, peak.element);
+    lines.push_back(line_of(kind, place_words(r), peak, state.time, may_refine_));
   }
   return lines;
 }
@@ -89,13 +92,6 @@ std::string passed_words(const std::vector<LimitRecord>& records) {
       words += fmt::format("{}{} up to {:.4g}{} (limit {:.4g})", words.empty() ? "" : ", ", r.key, r.largest,
                            with_space(r.unit), r.limit);
   return words;
-}
-
-double beyond_limits(const std::vector<LimitRecord>& records) {
-  double most = 0;
-  for (const LimitRecord& r : records)
-    if (r.passed && r.limit > 0) most = std::max(most, r.largest / r.limit);
-  return most;
 }
 
 }  // namespace ropewalk

@@ -24,7 +24,9 @@ struct RunEnergies {
 
 class LimitWatch {
  public:
-  explicit LimitWatch(Watched watched) : watched_(std::move(watched)) {}
+  // `may_refine`: whether messages name --on-limit refine.
+  explicit LimitWatch(Watched watched, bool may_refine = false)
+      : watched_(std::move(watched)), may_refine_(may_refine) {}
 
   // Takes over the limits of a run that goes on, from its own file or from that of the run before its elements were
   // split, without those passed after `step`.
@@ -42,9 +44,11 @@ class LimitWatch {
   // Whether at the last check a limit was passed that shorter elements would cure.
   bool finer_would_help() const { return finer_would_help_; }
   const std::vector<LimitRecord>& records() const { return records_; }
+  const std::vector<Held>& held() const { return watched_.held; }
 
  private:
   Watched watched_;
+  bool may_refine_ = false;
   std::vector<LimitRecord> records_;
   bool finer_would_help_ = false;
 };
@@ -52,9 +56,5 @@ class LimitWatch {
 // One line that names every limit passed and its largest value, as "bend_deg up to 21.4 deg (limit 19.9)". The line
 // is empty if no limit was passed.
 std::string passed_words(const std::vector<LimitRecord>& records);
-// The largest value over its limit, of the limits that were passed; 0: none was. Beyond `far_beyond` the results of
-// a run are not those of the tubes.
-double beyond_limits(const std::vector<LimitRecord>& records);
-inline constexpr double far_beyond = 3;
 
 }  // namespace ropewalk

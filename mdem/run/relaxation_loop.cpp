@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/error.hpp"
+#include "sim/statics/stability.hpp"
+
 namespace ropewalk {
 
 StopReason RelaxationLoop::go() {
@@ -16,12 +19,14 @@ StopReason RelaxationLoop::go() {
   if (last_step < 0 && run_.took_all_steps && done >= most_) most_ += done;
   run_.listener.begin_loop(0, 0);
   run_.checkpoints.begin_interval();
-  Relaxed end = simulation.relax(options.goal, most_ + 1, [this](long step) { return goes_on_after(step); });
+  if (options.solver != RunOptions::Solver::fire)
+    newton_.emplace(simulation, NewtonOptions{options.solver == RunOptions::Solver::automatic});
+  Relaxed end = relax(most_ + 1, [this](long step) { return goes_on_after(step); });
   run_.listener.end_loop();
   // In the middle of the relaxation, from where `resume` goes on.
   if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return run_.stop(stop_);
   if (stop_ != StopReason::none) run_.keep_for(stop_);
-  if (stop_ == StopReason::complete) end = simulation.relax(options.goal, most_, [](long) { return true; });
+  if (stop_ == StopReason::complete) end = relax(most_, [](long) { return true; });
   simulation.end_relaxation();
   run_.write_last();
   StopReason why = stop_ == StopReason::none ? StopReason::complete : stop_;
@@ -32,8 +37,39 @@ StopReason RelaxationLoop::go() {
   if (stop_ == StopReason::none || (stop_ == StopReason::complete && why == StopReason::refine)) run_.keep_for(why);
   if (why != StopReason::complete) return why;
   run_.at_rest = end.at_rest;
-  run_.reason = words_of(end, most_);
+  run_.reason = newton_ ? words_of(statics_, most_) : words_of(end, most_);
   return why;
+}
+
+void refuse_statics(const Scene& scene, const Simulation& simulation) {
+  if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
+  const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
+  if (!refused.why.empty()) throw InputError({scene.path, 0, "run.solver"}, refused.why, refused.remedy);
+}
+
+namespace {
+
+// By the rates of its modes where that is cheap. Pivots or quotients of the tangent do not tell under couples.
+std::string stability_words(const Simulation& simulation, const Statics& end) {
+  constexpr double affordable = 3e8;  // bytes
+  constexpr double per_ns = 1000;     // 1/ps in 1/ns
+  if (end.falls) return "it rests on a saddle, and stays there";
+  std::string why;
+  if (const auto found = stability_of(simulation, affordable, why))
+    return found->stable() ? fmt::format("stable: no motion grows faster than {:.2g}/ns", found->neutral * per_ns)
+                           : fmt::format("unstable: a motion grows by {:.3g}/ns", found->growth * per_ns);
+  if (end.symmetric)
+    return fmt::format("stable: no motion grows faster than {:.2g}/ns", NewtonOptions().slow * per_ns);
+  return "whether it is stable under these couples is not known: " + why;
+}
+
+}  // namespace
+
+Relaxed RelaxationLoop::relax(long most, const std::function<bool(long)>& progress) {
+  const RelaxGoal& goal = run_.moving.scene.run.goal;
+  if (!newton_) return run_.moving.simulation.relax(goal, most, progress);
+  statics_ = newton_->relax(goal, most, progress);
+  return statics_.relaxed;
 }
 
 bool RelaxationLoop::goes_on_after(long step) {
@@ -41,14 +77,15 @@ bool RelaxationLoop::goes_on_after(long step) {
     stop_ = StopReason::complete;
     return false;
   }
-  if (step % 100 == 0) {
+  const bool newton = newton_ && newton_->at_newton();  // a step of it takes as long as many of FIRE
+  if (newton || step % 100 == 0) {
     if (run_.files.row_step() != run_.step()) run_.write_row();
     stop_ = run_.limits.check(false);
     run_.rollback.take_snapshot();
   }
   if (run_.listener.wants_progress()) run_.listener.progress(static_cast<double>(step), status());
   if (stop_ == StopReason::none) stop_ = run_.asked_to_stop();
-  if (stop_ == StopReason::none && RunSchedule::has_pause(step)) run_.checkpoints.save_if_due();
+  if (stop_ == StopReason::none && (newton || RunSchedule::has_pause(step))) run_.checkpoints.save_if_due();
   return stop_ == StopReason::none;
 }
 
@@ -75,6 +112,38 @@ std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
                                         max_steps, end.force, goal.force);
   if (std::isinf(end.above)) return words + "; the energy may still fall along some motion: no minimum is near";
   return std::isfinite(end.above) ? words + fmt::format("; energy {}, {:.2g} asked for", left, goal.energy) : words;
+}
+
+std::string RelaxationLoop::words_of(const Statics& end, long max_steps) const {
+  const RunOptions& options = run_.moving.scene.run;
+  const Relaxed& r = end.relaxed;
+  std::string words;
+  if (r.at_rest)
+    words = "at rest";
+  else if (end.end == Statics::End::refused)
+    words = "not at rest: no step of Newton's method is short enough";
+  else
+    words = end.newton_steps > 0 ? fmt::format("not at rest after {} steps of Newton's method", end.newton_steps)
+                                 : fmt::format("not at rest after {} steps", max_steps);
+  words +=
+      fmt::format(": largest force {:.2g} eV/nm, largest moment {:.2g} eV", end.largest_force, end.largest_torque);
+  if (std::isfinite(r.above)) words += fmt::format(", {:.2g} eV above the minimum by estimate", r.above);
+  if (!r.at_rest) {
+    words += fmt::format("; {:.3g} eV/nm asked for", options.goal.force);
+    const Simulation& s = run_.moving.simulation;
+    const std::string why = overloaded_bond(s);
+    if (!why.empty()) return words + "; " + why;
+    const bool apart = s.interaction().law && s.topology().tubes() > 1 && s.forces().energy.vdw == 0;
+    return apart ? words + "; no two tubes touch" : words;
+  }
+  if (r.saddles > 0)
+    words += fmt::format("; it left {} saddle{} of the energy on the way", r.saddles, r.saddles > 1 ? "s" : "");
+  words += "; " + stability_words(run_.moving.simulation, end);
+  if (end.spinning > 10 * end.largest_torque)
+    words +=
+        fmt::format("; couples about their own axes spin single tubes by up to {:.2g} eV, and nothing holds them",
+                    end.spinning);
+  return words;
 }
 
 std::string RelaxationLoop::status() const {

@@ -11,11 +11,24 @@
 #include "run/plan_check.hpp"
 #include "run/refined_run.hpp"
 #include "run/relaxation_loop.hpp"
+#include "run/results.hpp"
 #include "run/run_manifest.hpp"
 #include "run/stages.hpp"
 #include "scene/network_words.hpp"
 
 namespace ropewalk {
+namespace {
+
+// The message with tube, element and clamp in place of the element's number in the scene.
+std::string words_with_place(const NumericalError& e, const Topology& topology, const std::vector<Held>& held) {
+  std::string text = e.what();
+  const std::string number = fmt::format("element {}:", e.element());
+  const std::size_t at = text.find(number);
+  if (e.element() < 0 || e.element() >= topology.elements() || at == std::string::npos) return text;
+  return text.replace(at, number.size(), place_in_words(topology, held, e.element()) + ":");
+}
+
+}  // namespace
 
 void Run::write_manifest(const char* status, const std::string& reason) {
   parts_.files.write_manifest(manifest_of(parts_, status, reason));
@@ -64,6 +77,8 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
   r.directory = parts_.files.directory();
   r.reason = reason;
   r.passed = passed_words(parts_.limits.records());
+  r.beyond_since = beyond_sentence(parts_.limits.records());
+  r.worst = worst_words(parts_.limits.records());
   r.beyond = beyond_limits(parts_.limits.records());
   if (!parts_.moving.relaxes()) r.damping = damping_words(parts_.last_row);
   r.missing = parts_.files.missing();
@@ -74,15 +89,23 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
   return r;
 }
 
+// Without them where its files were taken away meanwhile.
+void Run::add_results(RunResult& r) const {
+  try {
+    if (!parts_.moving.relaxes()) r.results = result_sentences(results_of(r.directory, parts_.moving.prepared));
+  } catch (const InputError&) {
+  }
+}
+
 RunResult Run::finish() {
   parts_.checkpoints.write_results();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
+    r.expected = judge(parts_.moving.scene.expected, r.directory);
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
-    if (parts_.last_row["links_broken"] + parts_.last_row["bonds_broken"] > 0)
-      r.strength = strength_words(read_log(r.directory.log()));
+    add_results(r);
   } else {
     r.end = RunEnd::incomplete;
   }
@@ -94,7 +117,9 @@ RunResult Run::stopped_at_limit() {
   const std::string reason = fmt::format("stopped at {:.3f} ps where a limit was passed: {}", parts_.state().time,
                                          passed_words(parts_.limits.records()));
   write_end("stopped", reason);
-  return result(RunEnd::at_limit, reason);
+  RunResult r = result(RunEnd::at_limit, reason);
+  add_results(r);
+  return r;
 }
 
 RunResult Run::stopped(RunEnd end) {
@@ -129,11 +154,14 @@ RunResult Run::refined() {
   return r;
 }
 
-RunResult Run::failed(const std::exception& e) {
+RunResult Run::failed(const NumericalError& e) {
   write_limits();
+  parts_.files.write_events(parts_.moving);
   parts_.files.write_failed_state(parts_.moving);
-  write_end("failed", e.what());
-  RunResult r = result(RunEnd::failed, e.what());
+  const std::string why = words_with_place(e, parts_.moving.prepared.topology, parts_.limits.held());
+  write_end("failed", why);
+  RunResult r = result(RunEnd::failed, why);
+  add_results(r);
   r.error = std::current_exception();
   return r;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "run/expectations.hpp"
 #include "run/run_parts.hpp"
 
 namespace ropewalk {
@@ -26,14 +27,17 @@ class Run;
 struct RunResult {
   RunEnd end = RunEnd::finished;
   RunDirectory directory;
-  std::string reason;    // in words
-  std::string passed;    // limits, in words
-  double beyond = 0;     // the largest value over its limit, of the limits that were passed
-  std::string damping;   // its part of the lost energy, in words
-  std::string strength;  // of a rope that came apart, in words
-  std::string network;   // of a film at its end, in words
-  std::string plan;      // planned and seen errors, in words
-  std::string missing;   // files
+  std::string reason;                // in words
+  std::string passed;                // limits, in words
+  std::string beyond_since;          // since when and by which limit, a sentence; empty: within all limits
+  std::string worst;                 // how far it was passed, in words
+  double beyond = 0;                 // the largest value over its limit, of the limits that were passed
+  std::vector<std::string> results;  // a sentence each
+  std::string damping;               // its part of the lost energy, in words
+  std::string network;               // of a film at its end, in words
+  std::string plan;                  // planned and seen errors, in words
+  std::vector<Judgement> expected;   // of the [[expect]] tables
+  std::string missing;               // files
   std::int64_t steps = 0;
   double time_ps = 0, wall_seconds = 0;
   bool relaxes = false;
@@ -76,11 +80,15 @@ class Run {
   RunResult stopped_at_limit();
   RunResult stopped(RunEnd end);
   RunResult refined();
-  RunResult failed(const std::exception& error);
+  RunResult failed(const NumericalError& error);
+  void add_results(RunResult& result) const;
   RunResult broken_off(const std::exception& error);
 
   RunParts parts_;
 };
+
+// As RunOrigin has them.
+std::string own_forces_of(const RunSettings& settings);
 
 // The run and those in which it goes on.
 RunResult go_through(std::unique_ptr<Run> run);

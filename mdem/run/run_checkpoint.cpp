@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 7 ";
+constexpr const char* title = "ROPEWALK-CHECKPOINT 8 ";
 constexpr std::size_t hash_length = 16;
 
 struct Writer : ByteWriter {
@@ -52,7 +52,7 @@ void visit_origin(Archive& archive, Origin& o) {
     if constexpr (!std::is_const_v<Origin>) hashes->resize(std::min<std::uint64_t>(count, 1000));
     for (auto& hash : *hashes) archive(hash);
   }
-  for (auto* text : {&o.state, &o.version, &o.git_id, &o.instructions, &o.device}) archive(*text);
+  for (auto* text : {&o.state, &o.version, &o.git_id, &o.instructions, &o.device, &o.own_forces}) archive(*text);
 }
 
 template <class Archive, class Checkpoint>
@@ -113,12 +113,35 @@ std::vector<StoredCheckpoint> stored_checkpoints(const RunDirectory& dir) {
   return all;
 }
 
+std::string id_of_program() { return fmt::format("{} ({})", version, git_id); }
+
+// That wrote a checkpoint of another format, as the manifest has it; empty: the checkpoint has the format of this
+// one.
+std::string other_version(const RunDirectory& dir) {
+  constexpr std::size_t number = 20;  // of "ROPEWALK-CHECKPOINT "
+  const std::string begin = read_file(dir.checkpoint()).substr(0, std::string(title).size());
+  if (begin.substr(0, number) != std::string(title).substr(0, number) || begin == title) return "";
+  try {
+    const Manifest m = read_manifest(dir.manifest());
+    return fmt::format("{} ({})", m.version, m.git_id);
+  } catch (const InputError&) {
+    return "of another version";
+  }
+}
+
 void refuse_without_checkpoint(const RunDirectory& dir, const std::vector<StoredCheckpoint>& all) {
   for (const StoredCheckpoint& s : all)
     if (s.content) return;
-  throw InputError({dir.checkpoint(), 0, ""},
-                   all.empty() ? "there is no checkpoint" : "is damaged or of another version",
-                   all.empty() ? "start the run with `ropewalk run`" : "start the run anew with `ropewalk run`");
+  if (all.empty())
+    throw InputError({dir.checkpoint(), 0, ""}, "there is no checkpoint", "start the run with `ropewalk run`");
+  if (const std::string version = other_version(dir); !version.empty())
+    throw InputError(
+        {dir.checkpoint(), 0, ""},
+        fmt::format("was written by ropewalk {}, and this is {}, which has other checkpoints", version,
+                    id_of_program()),
+        "finish the run with that version, or begin a scene with its last state: file = \"final.csv\" in "
+        "[state]");
+  throw InputError({dir.checkpoint(), 0, ""}, "is damaged", "start the run anew with `ropewalk run`");
 }
 
 std::string size_words(const std::string& path, const FileMark& mark) {

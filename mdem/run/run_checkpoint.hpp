@@ -25,6 +25,7 @@ struct RunOrigin {
   std::string version, git_id;     // of the program
   std::string instructions;        // see instructions_in_use()
   std::string device;              // as --device names it; empty: none
+  std::string own_forces;          // how many forces of one's own it has, in Python; empty: none
 };
 // The origin of a run in this directory by this program, without a device.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);

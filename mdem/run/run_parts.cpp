@@ -1,6 +1,13 @@
 #include "run/run_parts.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/run_results.hpp"
 #include "model/error.hpp"
+#include "run/events_file.hpp"
 #include "run/use_device.hpp"
 
 namespace ropewalk {
@@ -12,7 +19,7 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
       schedule(moving.scene, moving.prepared),
       stops(moving.scene.stops),
       files(std::move(dir), listener),
-      limits(settings.on_limit, moving, schedule, files, listener),
+      limits(settings.on_limit, settings.may_refine, moving, schedule, files, listener),
       checkpoints(moving, files, limits, clock, listener),
       rollback(moving, files, limits, stops, checkpoints, listener) {
   use_device();
@@ -28,9 +35,26 @@ void RunParts::use_device() {
 }
 
 void RunParts::write_row() {
+  const LogRow before = last_row;
   last_row = moving.row();
   stops.add(last_row);
   files.write_row(last_row, step());
+  tell_first_break(before);
+}
+
+void RunParts::tell_first_break(const LogRow& before) {
+  if (told_break || !(last_row["bonds_broken"] > 0)) return;
+  std::vector<TermEvent> breaks = moving.simulation.term_events();
+  breaks.erase(std::remove_if(breaks.begin(), breaks.end(), [](const TermEvent& e) { return !is_break(e); }),
+               breaks.end());
+  if (breaks.empty()) return;
+  const TermEvent& first = *std::min_element(
+      breaks.begin(), breaks.end(), [](const TermEvent& a, const TermEvent& b) { return a.time < b.time; });
+  const double turned = rotation_at({before, last_row}, first.time);
+  listener.tell(fmt::format("the first tube broke at {:.4g} ps{}: {}; events.csv lists every break", first.time,
+                            std::fabs(turned) >= 1 ? fmt::format(", {:.4g}°", turned) : "",
+                            place_in_words(moving.prepared.topology, limits.held(), first.a)));
+  told_break = true;
 }
 
 void RunParts::write_last() {

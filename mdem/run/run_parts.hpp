@@ -18,6 +18,7 @@ struct RunParts {
   // Moves the scene on the device that the settings name. Throws InputError where it cannot.
   void use_device();
   void write_row();
+  void tell_first_break(const LogRow& before);
   void write_frame() { files.write_frame(moving); }
   // Where the run stops for this reason: a checkpoint as of a run that goes on. What is written later is taken back
   // by `resume`.
@@ -44,6 +45,7 @@ struct RunParts {
   LogRow last_row;
   StopReason at_once = StopReason::none;  // before the first step
   bool took_all_steps = false;            // a relaxation had run out of its steps when it was resumed
+  bool told_break = false;                // of the tubes
   std::string asked_by;                   // who asked for an end
   std::string reason;                     // of the end, in words
   bool at_rest = true;                    // false: a relaxation ran out of steps

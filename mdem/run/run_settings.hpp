@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "run/limit_watch.hpp"
 #include "run/wall_time.hpp"
+#include "scene/drive.hpp"
 
 namespace ropewalk {
 
@@ -13,8 +16,11 @@ struct RunSettings {
   std::int64_t steps = -1;  // time step at which it stops; -1: the scene's end
   double until_ps = -1;     // time at which it stops; -1: the scene's end
   OnLimit on_limit = OnLimit::warn;
+  bool may_refine = true;  // false: of a run in a campaign, whose verbs take no OnLimit::refine
   WallTime wall_time;
   bool force = false;  // replace an earlier run
+  // Beside those of the scene: what no file says, forces of one's own in Python. Such a run goes on with as many.
+  std::vector<std::shared_ptr<const Drive>> own_drives = {};
   // As open_device() names it; empty: this processor alone (resume: what the run was begun with); "none": this
   // processor alone.
   std::string device;

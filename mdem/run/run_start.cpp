@@ -1,11 +1,14 @@
 // A run before its loop: checks, first files, and what a checkpoint brings back.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "model/error.hpp"
 #include "plan/forecast.hpp"
+#include "run/events_file.hpp"
+#include "run/relaxation_loop.hpp"
 #include "run/run.hpp"
 #include "scene/state_files.hpp"
 
@@ -14,6 +17,7 @@ namespace ropewalk {
 void Run::check_before_start() const {
   refuse_cooling(parts_.moving.scene, parts_.moving.prepared);
   const MovingScene& m = parts_.moving;
+  refuse_statics(m.scene, m.simulation);
   if (!m.scene.stops.empty())
     refuse_stops_without_value(m.scene, log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account()));
   parts_.limits.check_before_start();
@@ -43,6 +47,10 @@ void Run::tell_notes() const {
     for (const std::string& note : notes) parts_.listener.tell_note(note);
 }
 
+std::string own_forces_of(const RunSettings& settings) {
+  return settings.own_drives.empty() ? "" : std::to_string(settings.own_drives.size());
+}
+
 // Under which `resume` goes on.
 std::string Run::device_name() const { return parts_.moving.simulation.device() ? parts_.settings.device : ""; }
 
@@ -51,6 +59,7 @@ void Run::begin_files() {
   const Scene& scene = p.moving.scene;
   p.checkpoints.origin = origin_of(p.files.directory(), scene);
   p.checkpoints.origin.device = device_name();
+  p.checkpoints.origin.own_forces = own_forces_of(p.settings);
   write_manifest("running");  // before the checkpoint: it has the name of the scene
   p.files.open(scene.run.frames_format, {}, {}, p.schedule.expected_frames());
   p.files.write_header();
@@ -77,8 +86,11 @@ void Run::restore(RunCheckpoint c) {
   p.clock.earlier = c.wall_seconds;
   p.checkpoints.origin = origin_of(dir, p.moving.scene);
   p.checkpoints.origin.device = device_name();
+  p.checkpoints.origin.own_forces = own_forces_of(p.settings);
   p.files.open(p.moving.scene.run.frames_format, c.log, c.frames, p.schedule.expected_frames());
   p.limits.inherit(c.limits, p.state().step);
+  const std::vector<TermEvent> events = p.moving.simulation.term_events();
+  p.told_break = std::any_of(events.begin(), events.end(), is_break);
   if (!p.stops.empty())
     for (const LogRow& earlier : read_log(dir.log())) p.stops.add(earlier);
   // A run that a rule has ended stands at its last row, and is not taken further.

@@ -11,12 +11,19 @@ namespace {
 
 constexpr int failed_or_incomplete = 3, not_relaxed = 4, at_limit = 5, by_wall_time = 6;
 
+// What a reader has to know first, and what came of the run.
+void print_news(const RunResult& r) {
+  if (!r.beyond_since.empty()) print(r.beyond_since + "\n");
+  for (const std::string& sentence : r.results) print(sentence + "\n");
+}
+
 void print_results(const RunResult& r) {
+  print_news(r);
   if (!r.passed.empty()) print(fmt::format("Limits passed: {}\n", r.passed));
-  if (!r.strength.empty()) print(r.strength + "\n");
   if (!r.network.empty()) print("At the end " + r.network + ".\n");
   if (!r.damping.empty()) print(r.damping + "\n");
   if (!r.plan.empty()) print(r.plan + "\n");
+  for (const Judgement& j : r.expected) print(j.words + "\n");
   const std::string time = r.relaxes ? "" : fmt::format("{:.1f} ps, ", r.time_ps);
   print(fmt::format("{}{} steps, {}{:.0f} s. Report: {}\n", r.reason.empty() ? "" : r.reason + "\n", r.steps, time,
                     r.wall_seconds, r.directory.report()));
@@ -41,9 +48,8 @@ int tell_end(const RunResult& r) {
   switch (r.end) {
     case RunEnd::finished:
       print_results(r);
-      if (r.beyond > far_beyond)
-        tell(fmt::format("{:.3g} times a limit was reached: these are not the results of such tubes", r.beyond));
-      return 0;
+      if (r.beyond > far_beyond) tell(r.worst + ": its results are not those of such tubes");
+      return missed(r.expected) > 0 ? not_as_expected : 0;
     case RunEnd::incomplete:
       print_results(r);
       tell(fmt::format("the run is done, but for {}; write them with: ropewalk resume {}", r.missing, dir));
@@ -53,6 +59,7 @@ int tell_end(const RunResult& r) {
       tell(fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", r.reason, dir));
       return not_relaxed;
     case RunEnd::at_limit:
+      print_news(r);
       tell(fmt::format("{}; go on all the same with: ropewalk resume {}", r.reason, dir));
       return at_limit;
     case RunEnd::wall_time:
@@ -60,6 +67,7 @@ int tell_end(const RunResult& r) {
       tell_as_is(fmt::format("\n{}; go on with: ropewalk resume {}\n", r.reason, dir));
       return r.end == RunEnd::wall_time ? by_wall_time : 128 + stop_signal;
     case RunEnd::failed:
+      print_news(r);
       tell_as_is(fmt::format("\nropewalk: {}. State written to {}\n", r.reason, r.directory.failed_state()));
       return failed_or_incomplete;
     case RunEnd::broken_off:

@@ -122,10 +122,11 @@ std::vector<TermKind> terms_of_shipped_drives() {
   return kinds;
 }
 
-// A program that writes a log reads scenes, and so has this file.
-[[maybe_unused]] const bool at_start = set_shipped_terms(&terms_of_shipped_drives);
-
 }  // namespace
+
+// Programs that link this library have this file, even if they only read logs, by this name (mdem/CMakeLists.txt).
+extern "C" bool ropewalk_shipped_terms;
+bool ropewalk_shipped_terms = set_shipped_terms(&terms_of_shipped_drives);
 
 bool Drive::holds_elements() const {
   if (ends() == Ends::clamped || ends() == Ends::loaded) return true;

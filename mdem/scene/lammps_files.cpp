@@ -95,6 +95,7 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
+  if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
   if (!lacking.empty())
     throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
 }

@@ -70,6 +70,21 @@ void refuse_stop_rules(const Scene& scene) {
     throw InputError({scene.path, 0, "stop"}, "is for dynamics, and run.mode is \"relax\"", "take it away");
 }
 
+void refuse_expectations(const Scene& scene, double duration) {
+  const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
+  for (const Expectation& e : scene.expected) {
+    column_of_log(e.column, {scene.path, 0, "expect.column"});
+    if (!e.at) continue;
+    if (relaxes)
+      throw InputError({scene.path, 0, "expect.at_ps"}, "is a time, and a relaxation has none",
+                       "take it away: the last row is judged");
+    if (*e.at > duration * (1 + 1e-9))
+      throw InputError({scene.path, 0, "expect.at_ps"},
+                       fmt::format("is {:.6g}, and the run ends at {:.6g} ps", *e.at, duration),
+                       "name an earlier time, or run longer");
+  }
+}
+
 // A tolerance above all loads would call any state relaxed.
 void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
   if (scene.run.mode != RunOptions::Mode::relax) return;
@@ -269,6 +284,7 @@ Prepared prepare(Scene& scene) {
     refuse_overlaps(out.topology, out.interaction, out.state, {scene.source->file(), 0, ""},
                     scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
+  refuse_expectations(scene, out.duration);
   return out;
 }
 

@@ -15,6 +15,7 @@
 #include "model/parameters.hpp"
 #include "observe/limits.hpp"
 #include "scene/drive.hpp"
+#include "scene/expectation.hpp"
 #include "scene/source.hpp"
 #include "scene/stop_rule.hpp"
 #include "sim/dynamics/relax_goal.hpp"
@@ -53,6 +54,8 @@ struct ContactOptions {
 struct RunOptions {
   enum class Mode { dynamics, relax };
   Mode mode = Mode::dynamics;
+  enum class Solver { fire, newton, automatic };
+  Solver solver = Solver::fire;  // relax mode
   double time_step = 0;  // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
@@ -96,6 +99,7 @@ struct Scene {
   ObserveOptions observe;
   LimitOptions limits;
   std::vector<StopRule> stops;
+  std::vector<Expectation> expected;
 
   const ParameterSet& parameters() const { return sets.front(); }
   bool from_file() const { return source && !source->file().empty(); }  // a state with velocities of its own

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "scene/drive_kind.hpp"
 #include "scene/kinds/scene_kind.hpp"
@@ -11,7 +12,9 @@
 namespace ropewalk {
 
 bool SceneTable::optional() const {
-  return listed || std::any_of(keys.begin(), keys.end(), [](const SceneKey& k) { return k.required(); });
+  // Also "required but for ...".
+  return listed || std::any_of(keys.begin(), keys.end(),
+                               [](const SceneKey& k) { return k.standard.rfind("required", 0) == 0; });
 }
 
 std::string as_toml(double value) { return fmt::format("{:.6g}", value); }
@@ -28,7 +31,7 @@ std::vector<SceneTable> scene_tables() {
     tables.back().has_properties = kind.has_properties();
   }
   for (const SceneTable& table :
-       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc()})
+       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc(), expect_table().doc()})
     tables.push_back(table);
   return tables;
 }
@@ -45,9 +48,20 @@ std::string title_of(const SceneTable& t) {
   return t.name.empty() ? t.meaning + "\n" : fmt::format("{}  {}\n", t.header(), t.meaning);
 }
 
+constexpr std::size_t widest = 120;  // columns of a terminal that help fills
+
+// Key, unit and default, and the meaning behind them, or below where there is no room.
 std::string line_of(const SceneKey& k) {
-  return fmt::format("  {:31} {:10} {:30} {}\n", k.key, k.unit, k.standard.empty() ? k.value : k.standard,
-                     k.meaning);
+  const std::string begin =
+      fmt::format("  {:31} {:10} {:30}", k.key, k.unit, k.standard.empty() ? k.value : k.standard);
+  if (begin.size() <= 74 && begin.size() + 1 + k.meaning.size() <= widest) return begin + " " + k.meaning + "\n";
+  std::string text = begin.substr(0, begin.find_last_not_of(' ') + 1), line;
+  std::istringstream words(k.meaning);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && 7 + line.size() + word.size() > widest) text += "\n      " + line, line.clear();
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return text + "\n      " + line + "\n";
 }
 
 }  // namespace

@@ -92,6 +92,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
   for (const TomlTable& t : top.tables("stop")) scene.stops.push_back(stop_table().read(t, scene));
+  for (const TomlTable& t : top.tables("expect")) scene.expected.push_back(expect_table().read(t, scene));
 }
 
 }  // namespace
@@ -111,6 +112,9 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   Scene scene = table.read(top, file);
   read_tables(top, scene);
   top.finish(belongs_to);
+  if (scene.run.mode == RunOptions::Mode::relax)
+    for (auto& drive : scene.drives)
+      if (auto held = drive->at_its_end()) drive = std::move(held);
   for (const auto& drive : scene.drives) drive->refuse(top, scene);
   check_run(top, scene);
   return scene;

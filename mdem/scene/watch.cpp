@@ -1,5 +1,7 @@
 #include "scene/watch.hpp"
 
+#include <algorithm>
+
 #include "scene/scene_to_model.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
@@ -18,6 +20,17 @@ double twist_energy_of(const Scene& scene, const Topology& topology, const Loads
   return energy;
 }
 
+std::vector<Held> held_by(const LoadsAndConstraints& loads, const Topology& topology) {
+  std::vector<Held> out;
+  if (!loads.empty()) out.assign(static_cast<std::size_t>(topology.elements()), Held::free);
+  for (const auto& load : loads)
+    for (const int e : load->elements) {
+      Held& held = out[static_cast<std::size_t>(e)];
+      held = std::max(held, load->order() == Load::Order::force ? Held::loaded : Held::clamped);
+    }
+  return out;
+}
+
 Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads,
                    const ContactLaw* law) {
   Watched out;
@@ -25,6 +38,7 @@ Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndC
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) out.rest.push_back(law->parallel_distance({i, j}, scene.element_length));
   out.twist_energy = twist_energy_of(scene, topology, loads);
+  out.held = held_by(loads, topology);
   const std::vector<Validity> validity = validities(scene, topology);
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     Limits limits = default_limits(topology.types[type], validity[type]);
@@ -33,7 +47,7 @@ Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndC
     if (scene.contact.legacy_torque) limits.energy_drift = 0;  // it gains energy, and is there to show it
     for (std::size_t k = 0; k < limit_count; ++k)
       if (scene.limits[k]) limits.*limit_kinds()[k].limit = *scene.limits[k];
-    if (scene.run.mode == RunOptions::Mode::relax) limits.speed = 0;  // a minimiser's speed is not one of tubes
+    if (scene.run.mode == RunOptions::Mode::relax) limits.speed = limits.shock = 0;  // no motion of tubes
     out.limits.push_back(limits);
   }
   return out;

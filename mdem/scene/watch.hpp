@@ -11,6 +11,9 @@ namespace ropewalk {
 // moment twists the scene, it is no rope, or heat moves it as well.
 double twist_energy_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads);
 
+// What holds each element; empty: there are no loads.
+std::vector<Held> held_by(const LoadsAndConstraints& loads, const Topology& topology);
+
 // `law`: that of the scene; null: none.
 Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndConstraints& loads,
                    const ContactLaw* law);

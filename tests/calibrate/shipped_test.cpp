@@ -152,6 +152,31 @@ TEST(ShippedSets, AnharmonicBondsHaveTheEnergiesOfTheAtoms) {
   }
 }
 
+// The pulls from which the sets were made: mean forces between their rows.
+TEST(ShippedSets, PulledBondsHaveTheForcesOfTheAtoms) {
+  for (const char* tube :
+       {"5-5", "10-10", "17-0", "12-6", "8-2", "6-4", "6-6", "8-8", "9-0", "12-12", "16-4", "15-15", "20-20"}) {
+    const ParameterSet set = shipped("cnt-" + std::string(tube) + "-tersoff");
+    ASSERT_TRUE(set.pull) << tube;
+    const BondStiffness bond = set.anharmonic_bond(0);
+    const double twist = -find_quantity(set, "atomistic.natural_twist")->value;
+    const auto energy = [&](double strain, double of) {
+      const Frame j = frame_of(Quaternion(Eigen::AngleAxisd(twist + of, Vector3::UnitZ())));
+      return bond_energy(bond, 1, Vector3(0, 0, 1 + strain), frame_of(Quaternion::Identity()), j).total();
+    };
+    std::vector<AtomisticRow> rows;
+    for (const AtomisticRow& row : read_atomistic_csv(set.path.substr(0, set.path.size() - 5) + "-stiffness.csv"))
+      if (row.kind == "pull") rows.push_back(row);
+    ASSERT_GT(rows.size(), 20u) << tube;
+    EXPECT_EQ(rows.back().strain, set.pull->end);
+    for (std::size_t k = 5; k < rows.size(); ++k) {
+      const double a = rows[k - 1].strain, b = rows[k].strain,
+                   atoms = (rows[k].energy - rows[k - 1].energy) / rows[k].length;
+      EXPECT_NEAR((energy(b, rows[k].twist) - energy(a, rows[k].twist)) / atoms, 1, 0.02) << tube << " " << b;
+    }
+  }
+}
+
 TEST(ShippedSets, TheTenTenTubeIsTheReference) {
   const ParameterSet set = shipped("cnt-10-10-tersoff");
   const double angstrom = 0.1;  // nm

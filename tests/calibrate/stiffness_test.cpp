@@ -389,6 +389,36 @@ TEST(FitAnharmonic, FindsTheTermsBehindTheEnergies) {
   }
 }
 
+// Forces of a pull from its energies, of a cell that is not at its natural twist.
+TEST(FitPull, FindsTheForcesBehindTheEnergies) {
+  constexpr double EA = 9480, GJ = 2060, natural = -0.004;
+  Anharmonic law;
+  law.used = 1, law.radius = 0.689, law.coupling = 30;
+  law.e3 = -7000, law.e2s = -1400, law.es2 = -4100, law.e4 = -6000, law.e3s = 900, law.e2s2 = 3000;
+  law.min_strain = -0.07, law.max_strain = 0.07, law.max_shear = 0.05, law.max_bend = 0.05;
+  // The force of atoms that are a little stiffer than the terms say.
+  const auto force = [](double e) { return 9500 * e - 22000 * e * e + 5000 * e * e * e; };
+  const auto work = [](double e) { return 4750 * e * e - 22000 / 3.0 * e * e * e + 1250 * e * e * e * e; };
+  std::vector<AtomisticRow> rows(3);  // others, which are left alone
+  for (int k = 0; k <= 40; ++k) {
+    AtomisticRow row;
+    row.kind = "pull", row.length = 2, row.strain = 0.005 * k, row.twist = 0;
+    const double e = row.strain;
+    row.energy = row.length * (work(e) + strain_energy(law, e, -natural).energy - strain_energy(law, e, 0).energy);
+    rows.push_back(row);
+  }
+  const PullFit fit = fit_pull(rows, law, EA, GJ, natural);
+  EXPECT_EQ(fit.end, 0.2);
+  for (std::size_t k = 0; k < fit.force.size(); ++k) {
+    const double e = 0.07 + 0.13 * static_cast<double>(k) / PULL_STEPS;
+    EXPECT_NEAR(fit.force[k].value / force(e), 1, 1e-6) << e;
+    EXPECT_LT(fit.force[k].standard_error, 1e-3 * force(e));
+  }
+  EXPECT_LT(fit.error, 0.01);
+  rows.resize(3 + 17);  // up to 0.08
+  EXPECT_EQ(fit_pull(rows, law, EA, GJ, natural).end, 0) << "nothing beyond the window";
+}
+
 // A torque that stays constant beyond a shear.
 TEST(FitCollapse, FindsWhereTheTorqueStopsRising) {
   Stiffness tube;

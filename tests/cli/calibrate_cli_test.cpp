@@ -51,6 +51,37 @@ TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
   expect_refusal("friction cnt-10-10-tersoff cnt-10-10-rebo", "provenance.potential");
   expect_refusal("friction cnt-5-5-tersoff --drag-ps 3", "--drag-ps");
   expect_refusal("friction cnt-5-5-tersoff --out no/such/friction.toml", "make the directory");
+  expect_refusal("pull", "set is required");
+  expect_refusal("pull cnt-10-10-rebo", "bond.anharmonic: is missing");
+  expect_refusal("pull cnt-5-5-tersoff --out no/such/set.toml", "make the directory");
+}
+
+// A set from before pulls were made gets one, and with it a strength.
+TEST_F(Calibrate, PullGivesAnOlderSetItsStrength) {
+  const std::string shipped = ROPEWALK_SOURCE_DIR "/data/parameters/cnt-5-5-tersoff";
+  for (const char* end : {".toml", "-stiffness.csv", "-contact.csv"})
+    fs::copy_file(shipped + end, dir / (std::string("old") + end));
+  std::string old = slurp(dir / "old.toml");
+  const auto begin = old.find("[bond.pull]"), end = old.find("[contact.line]");
+  ASSERT_NE(begin, std::string::npos);
+  old.erase(begin, end - begin);
+  for (const char* table : {"stiffness", "contact"}) {
+    const std::string name = std::string("cnt-5-5-tersoff-") + table;
+    old.replace(old.find(name), name.size(), std::string("old-") + table);
+  }
+  spit(dir / "old.toml", old);
+  const auto scene = [&](const char* set) {
+    spit(dir / "scene.toml", std::string("format = \"ropewalk-scene-1\"\nparameters = \"") + set +
+                                 "\"\n[chain]\nelements = 12\n[failure]\nfrom = \"atoms\"\n[run]\nduration_ps = 1\n");
+    return run("check scene.toml");
+  };
+  EXPECT_NE(scene("old.toml").err.find("`ropewalk calibrate pull "), std::string::npos);
+  const Outcome made = run("calibrate pull old.toml --out new.toml");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("a bond would be longer than 0.18 nm"), std::string::npos) << made.out;
+  EXPECT_EQ(scene("new.toml").code, 0);
+  EXPECT_NE(run("calibrate pull old.toml --out new.toml").err.find("exists"), std::string::npos);
+  EXPECT_EQ(run("calibrate pull new.toml --out new.toml --force").code, 0) << "in its own place";
 }
 
 // What it prints for a scene is a scene's table.

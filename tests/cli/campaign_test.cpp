@@ -62,9 +62,10 @@ TEST_F(Campaign, TableIsTheSameAfterInterruptions) {
   EXPECT_EQ(slurp(dir / "parts" / "table.csv"), table);
   // Gathered otherwise.
   const Outcome means = run("gather parts --columns time_ps,kinetic_eV --mean 4");
-  EXPECT_EQ(lines(means.out)[0],
-            "point,rope.tubes,thermostat.temperature_K,start.seed,status,time_ps,kinetic_eV,kinetic_eV_error,"
-            "limits_passed");
+  EXPECT_EQ(
+      lines(means.out)[0],
+      "point,rope.tubes,thermostat.temperature_K,start.seed,status,first_limit,first_limit_ps,time_ps,kinetic_eV,"
+      "kinetic_eV_error,limits_passed");
   EXPECT_NE(means.err.find("_seed-1: 4 ps are too short for an error of kinetic_eV"), std::string::npos)
       << means.err;
   EXPECT_EQ(lines(run("gather whole --series --columns time_ps").out).size(), 1 + 8 * 13u);

@@ -314,6 +314,26 @@ TEST_F(Cli, ARunThatARuleEndedIsNotTakenFurther) {
   }
 }
 
+// A scene that carries its result is a test of the program that runs it.
+TEST_F(Cli, ARunThatIsNotAsExpectedHasAnExitCode) {
+  const std::string right = "[[expect]]\ncolumn = \"time_ps\"\nvalue = 1\ntolerance_percent = 1\n";
+  small_rope("s.toml", "duration_ps = 1\n" + right);
+  EXPECT_THAT(run("check s.toml").out, HasSubstr("expected: time_ps 1 ± 0.01 at the end"));
+  const Outcome good = run("run s.toml --out d --quiet");
+  EXPECT_EQ(good.code, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("at the end, as expected: 1 ± 0.01"));
+  EXPECT_EQ(run("check d").code, 0);
+  small_rope("t.toml", "duration_ps = 1\n" + right +
+                           "[[expect]]\ncolumn = \"time_ps\"\nvalue = 7\ntolerance = 1\nat_ps = 0.5\n");
+  const Outcome bad = run("run t.toml --out e --quiet --until 0.6");
+  EXPECT_EQ(bad.code, 0) << "it is not at its end";
+  EXPECT_EQ(run("check e").code, 2);
+  EXPECT_EQ(run("resume e --quiet").code, 8);
+  const Outcome judged = run("check e");
+  EXPECT_EQ(judged.code, 8);
+  EXPECT_THAT(judged.out, HasSubstr("at 0.5 ps, not as expected: 7 ± 1"));
+}
+
 // The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0
 // that looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
@@ -1038,6 +1058,28 @@ TEST_F(Cli, RelaxationThatRunsOutOfStepsKeepsItsFilesAndCanGoOn) {
   const Outcome on = run("resume d --steps 100000 --quiet");
   EXPECT_EQ(on.code, 0) << on.err;
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "finished");
+}
+
+// FIRE does not come to rest under the couples of [twist]; their ramp is left out.
+TEST_F(Cli, NewtonsMethodFindsTheStateOfRestUnderTwist) {
+  const std::string rope =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+      "[twist]\nmoment_nN_nm = 10\nrate_nN_nm_per_ps = 1\n[run]\nmode = \"relax\"\nsolver = ";
+  for (const char* solver : {"newton", "auto"}) {
+    spit(dir / "s.toml", rope + '"' + solver + "\"\n");
+    const Outcome o = run(std::string("run s.toml --force --out ") + solver);
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    EXPECT_NE(o.out.find("at rest: largest force "), std::string::npos) << o.out;
+    EXPECT_NE(o.out.find("10 nN nm per tube by couples of fixed direction on the grips, held"), std::string::npos)
+        << o.out;
+  }
+  const auto last_twist = [&](const char* d) {
+    return ropewalk::read_log((dir / d / "log.csv").string()).back()["geometric_twist_deg"];
+  };
+  EXPECT_GT(last_twist("newton"), 10);
+  EXPECT_NEAR(last_twist("newton"), last_twist("auto"), 0.01);
+  const Outcome modes = run("modes newton");
+  EXPECT_EQ(modes.code, 0) << modes.err;
 }
 
 // Every wrong file of tests/cli/bad: exit code 2 and the one line that it expects.

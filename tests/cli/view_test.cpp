@@ -142,8 +142,8 @@ TEST_F(View, LinksAreThereAsLongAsTheyHold) {
   const std::size_t formed = count(",link formed,"), broken = count(",link broke,");
   ASSERT_GT(broken, 0u);
   ASSERT_GT(formed, broken);
-  EXPECT_NE(o.out.find("Largest stress "), std::string::npos) << o.out;
-  EXPECT_NE(o.out.find(fmt::format("; {} of {} links and 0 bonds of tubes have broken.", broken, formed)),
+  EXPECT_NE(o.out.find("Stress "), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find(fmt::format("{} of {} links broke.", broken, formed)),
             std::string::npos)
       << o.out;
   ASSERT_EQ(run("view d").code, 0);

@@ -221,6 +221,20 @@ class RunTest(FolderTest):
         again = ropewalk.run(run.scene.changed({"run.duration_ps": 1}), "again")
         self.assertLess(again.log["time_ps"][-1], 1.05)
 
+    def test_a_run_beyond_a_limit_says_so(self):
+        run = ropewalk.run({**ROPE, "limits": {"twist_deg": 0.001}}, "beyond")
+        first = run.first_limit
+        self.assertEqual(first["key"], "twist_deg")
+        self.assertRegex(repr(run), "<Run beyond: finished, beyond twist_deg from [0-9.]+ ps on>")
+        results = run.results
+        self.assertEqual((results["status"], results["first_limit"]), ("finished", "twist_deg"))
+        self.assertEqual(results["first_limit_ps"], first["passed_at_ps"])
+        torque = 0.5 * (run.log["torque_upper_nN_nm"] + run.log["torque_lower_nN_nm"])
+        self.assertAlmostEqual(results["torque_max_nN_nm"], np.abs(torque).max(), places=9)
+        within = ropewalk.run(ROPE, "within")
+        self.assertIsNone(within.first_limit)
+        self.assertEqual(repr(within), "<Run within: finished>")
+
     def test_what_is_no_run_is_refused(self):
         with self.assertRaisesRegex(ropewalk.InputError, "is not the directory of a run"):
             ropewalk.open(".")

@@ -45,6 +45,21 @@ def pull(now):
 
 
 class OwnForceTest(FolderTest):
+    # The run does the steps of a simulation with the same forces, and only goes on with them.
+    def test_a_run_takes_forces_of_ones_own(self):
+        scene = ropewalk.Scene(FREE)
+        for force in (Trap(scene, 0.3, 30), pull):
+            simulation = ropewalk.Simulation(scene, forces=[force])
+            run = ropewalk.run(scene, "run", steps=40, forces=[force], threads=1, force=True)
+            simulation.step(40)
+            np.testing.assert_allclose(run.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
+            with self.assertRaisesRegex(ropewalk.InputError, "begun with 1 of one's own, in Python, and would go on with none"):
+                ropewalk.resume("run")
+            again = ropewalk.resume("run", steps=60, forces=[force], threads=1)
+            simulation.step(20)
+            self.assertEqual(again.log["step"][-1], 60)
+            np.testing.assert_allclose(again.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
+
     def test_a_force_with_an_energy_closes_the_account(self):
         scene, off = ropewalk.Scene(FREE), []
         for parts in (1, 2):

@@ -814,7 +814,7 @@ TEST(RopePicture, ColoursByMomentOnlyWhereThereAreMoments) {
   const RopeView with = twisted_rope(2, 50, 1, 0, true), without = twisted_rope(2, 50, 1, 0, false);
   EXPECT_GT(rope_camera({with}, 0.678).moment_eV, 0);
   EXPECT_EQ(rope_camera({without}, 0.678).moment_eV, 0);
-  EXPECT_THAT(rope_svg(with, 0.678), HasSubstr("bending moment (eV)"));
+  EXPECT_THAT(rope_svg(with, 0.678), HasSubstr("bending moment (nN nm)"));
   EXPECT_THAT(rope_svg(without, 0.678), Not(HasSubstr("bending moment")));
 }
 
@@ -964,7 +964,7 @@ TEST(Report, IsOneSoundPage) {
   EXPECT_THAT(html, HasSubstr("circle class=\"n5\""));
   EXPECT_THAT(html, HasSubstr("circle class=\"n7\""));
   EXPECT_THAT(html, HasSubstr("<b>Q = −1</b>"));
-  EXPECT_THAT(html, HasSubstr("bending moment (eV)"));
+  EXPECT_THAT(html, HasSubstr("bending moment (nN nm)"));
   EXPECT_THAT(html, HasSubstr("class=\"load\""));
   EXPECT_THAT(html, HasSubstr("class=\"hold\""));
   EXPECT_THAT(html, HasSubstr("60 of 500 rows"));

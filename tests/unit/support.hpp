@@ -63,6 +63,13 @@ inline BondStiffness anharmonic_bond() {
   return k;
 }
 
+// The same with a law of stretch beyond the window, whose force rises by less and less to a strain of 0.2.
+inline BondStiffness pulled_bond() {
+  BondStiffness k = anharmonic_bond();
+  set_pull(k.anharmonic, k.stretch, {0.2, {616, 694, 768, 832, 888, 936, 976, 1004, 1018}});
+  return k;
+}
+
 inline Topology published_topology() {
   Topology t;
   const double mass = 220 * units::carbon_mass, radius = 0.678;

@@ -220,13 +220,20 @@ std::string lead(const std::vector<Outcome>& outcomes) {
   };
   const auto good = count(Outcome::Verdict::holds), miss = count(Outcome::Verdict::misses),
              failed = count(Outcome::Verdict::failed), apart = count(Outcome::Verdict::not_applicable);
-  std::string text = fmt::format("{} of {} cases hold", good, static_cast<long>(outcomes.size()) - apart);
+  const auto known = std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
+    return o.verdict() == Outcome::Verdict::holds &&
+           std::any_of(o.result.checks.begin(), o.result.checks.end(),
+                       [](const Check& c) { return c.known.has_value(); });
+  });
+  std::string text = fmt::format("{} of {} cases hold", good - known, static_cast<long>(outcomes.size()) - apart);
+  if (known > 0) text += fmt::format(", {} with a known miss", known);
   if (miss > 0) text += fmt::format(", <b class=\"bad\">{} {}</b>", miss, miss == 1 ? "misses" : "miss");
   if (failed > 0) text += fmt::format(", <b class=\"bad\">{} could not be run</b>", failed);
   if (apart > 0) text += fmt::format("; {} are not applicable to this set, for the reasons given", apart);
   return text +
          ". A case holds if every number of the model lies within its tolerance. Tolerances were fixed before the "
-         "cases were run, and no reference was used in a fit. A case that misses names the assumption that fails.";
+         "cases were run, but for a case that says why its own was not, and no reference was used in a fit. A case "
+         "that misses names the assumption that fails.";
 }
 
 PageTop top_of(const std::vector<Outcome>& outcomes) {

@@ -12,6 +12,11 @@ from __future__ import annotations
 
 import os as _os
 
+try:
+    import numpy as _numpy  # noqa: F401
+except ImportError:
+    raise ImportError("ropewalk needs numpy: install it (Debian: python3-numpy)") from None
+
 
 def _load_core() -> None:
     """Imports the module of the libraries. OpenMP reads its settings when it is loaded: threads that wait spin for some

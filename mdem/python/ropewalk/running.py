@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Optional
 
 from . import _core
+from .forces import OwnForce, checked
 from .runs import Run
-from .scene import SceneLike, as_scene
+from .scene import Scene, SceneLike, as_scene
 from .threads import threads_at_most
 
 _log = logging.getLogger("ropewalk")
@@ -19,11 +20,12 @@ Progress = Callable[[int, int, str], object]
 def _options(
     steps: Optional[int], until_ps: Optional[float], threads: Optional[int], on_limit: str,
     wall_time_s: Optional[float], instructions: Optional[str], device: Optional[str],
-    progress: Optional[Progress],
+    progress: Optional[Progress], forces: Sequence[OwnForce], core: Optional[_core.Scene],
 ) -> _core.RunOptions:
     return _core.RunOptions(
         steps=steps, until_ps=until_ps, threads=threads_at_most(threads), on_limit=on_limit, wall_time_s=wall_time_s,
         instructions=instructions or "", device=device or "", tell=_log.warning, progress=progress,
+        forces=[checked(f, core.tube_begin, core.element_length) for f in forces] if core else [],
     )
 
 
@@ -39,6 +41,7 @@ def run(
     instructions: Optional[str] = None,
     device: Optional[str] = None,
     force: bool = False,
+    forces: Sequence[OwnForce] = (),
     progress: Optional[Progress] = None,
 ) -> Run:
     """Runs a scene as `ropewalk run` does, in a directory with log, frames, checkpoint and report. Times are in ps.
@@ -57,10 +60,13 @@ def run(
         instructions: instruction set, for the same bits on other processors; it holds for the process during the run
         device: moves the elements: "gpu", "opencl:TEXT", "c++"; None: this processor alone (no unit)
         force: replaces an earlier run in `out`
+        forces: forces of one's own, as Simulation takes them (eV/nm, eV), functions of the Instant alone: a run may go back
+            some steps. The program refuses to resume such a run; resume() takes the same forces again
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
-    _core.run(as_scene(scene)._to_run(), os.fspath(out), force,
-              _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, device, progress))
+    core = as_scene(scene)._to_run()
+    _core.run(core, os.fspath(out), force,
+              _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, device, progress, forces, core))
     return Run(out)
 
 
@@ -74,6 +80,7 @@ def resume(
     wall_time_s: Optional[float] = None,
     accept_changes: bool = False,
     device: Optional[str] = None,
+    forces: Sequence[OwnForce] = (),
     progress: Optional[Progress] = None,
 ) -> Run:
     """Goes on with a run from its last checkpoint, bit for bit, as `ropewalk resume`. Times are in ps.
@@ -87,8 +94,10 @@ def resume(
         wall_time_s: stops with a checkpoint before the run has taken so long, s
         accept_changes: goes on although scene, parameter set or program are not what the run was begun with
         device: as of run(), "none": this processor alone; None: that of the run (no unit)
+        forces: those that the run was begun with (eV/nm, eV)
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
+    core = Scene._of_run(os.fspath(directory))._core if forces else None
     _core.resume(os.fspath(directory), accept_changes,
-                 _options(steps, until_ps, threads, on_limit, wall_time_s, None, device, progress))
+                 _options(steps, until_ps, threads, on_limit, wall_time_s, None, device, progress, forces, core))
     return Run(directory)

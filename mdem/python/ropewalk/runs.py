@@ -4,7 +4,7 @@ from __future__ import annotations
 import json
 import os
 from importlib import import_module
-from typing import Any, TypedDict
+from typing import Any, Optional, TypedDict
 
 from . import _core
 from .errors import InputError
@@ -27,6 +27,8 @@ class Limit(TypedDict):
         passed: whether the limit was passed
         passed_at_ps: when it was first, ps
         passed_at_step: the same as a time step (no unit)
+        passed_tube, passed_element: where it was first, from 0; -1: nowhere (no unit)
+        passed_held_by: what holds that place, as "the upper clamp"; "" for nothing (no unit)
     """
 
     key: str
@@ -39,6 +41,9 @@ class Limit(TypedDict):
     passed: bool
     passed_at_ps: float
     passed_at_step: int
+    passed_tube: int
+    passed_element: int
+    passed_held_by: str
 
 
 class Run:
@@ -55,8 +60,9 @@ class Run:
         self._scene = Scene._of_run(self._path)
 
     def __repr__(self) -> str:
-        """Directory and status (no unit)."""
-        return f"<Run {self.path}: {self.status}>"
+        """Directory, status, and since when (ps) it is beyond a limit."""
+        beyond = _core.beyond_words(self._path)
+        return f"<Run {self.path}: {self.status}{', ' if beyond else ''}{beyond}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by its directory (no unit)."""
@@ -136,6 +142,18 @@ class Run:
         """The limits that the run watched, each in its unit."""
         found: list[Limit] = json.loads(_core.limits_json(self._file("limits.json")))["limits"]
         return found
+
+    @property
+    def first_limit(self) -> Optional[Limit]:
+        """The limit that was passed first, in its unit; what comes after `passed_at_ps` is beyond the model. None: all hold."""
+        passed = [limit for limit in self.limits if limit["passed"]]
+        return min(passed, key=lambda limit: (limit["passed_at_ps"], limit["passed_at_step"]), default=None)
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """What came of it, as tables of runs have it: first_limit, torque_max_nN_nm and more, with units in the names of the
+        keys; nan: the run has no such value."""
+        return {"status": self.status, **_core.run_results(self._path)}
 
     @property
     def refinements(self) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@
 #include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
 #include "run/plan_check.hpp"
+#include "run/results.hpp"
 #include "run/run_directory.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
@@ -69,13 +70,13 @@ void add_strength(const Scene& scene, ReportInput& in) {
   const bool breaks = std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& drive) {
     return drive->table().name == "links" || drive->table().name == "failure";
   });
-  const LogRow* strongest = strongest_row(in.log);
-  if (!breaks || !strongest) return;
-  const LogRow &most = *strongest, &last = in.log.back();
-  in.facts.push_back({"strength",
-                      fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", most["stress_GPa"],
-                                  most["specific_stress_N_per_tex"], most["ends_strain"]),
-                      "the largest stress in the log, over the cells of the cross-section"});
+  if (!breaks || in.log.empty()) return;
+  const LogRow& last = in.log.back();
+  if (const RunResults& r = in.results; std::isfinite(r.strength))
+    in.facts.push_back({"strength",
+                        fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", r.strength,
+                                    r.strength_N_per_tex, r.strength_strain),
+                        "the largest stress in the log, over the cells of the cross-section"});
   in.facts.push_back({"broken",
                       fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
                                   last["links_formed"], last["bonds_broken"]),
@@ -158,8 +159,9 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.bonds = p.topology.bonds();
   if (scene.sets.size() == 1)
     in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
-  add_strength(scene, in);
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
+  in.results = results_of(dir, p);
+  add_strength(scene, in);
   const Observer observer = make_observer(scene, p);
   in.rope = is_rope(p, observer);
   in.loaded = !p.loads.empty();

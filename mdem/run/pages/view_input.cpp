@@ -79,11 +79,15 @@ struct ColourField {
   ViewField field;
   std::vector<double> ElementColours::*values;
   double (*log_total)(const LogRow&);
+  double unit = 1;  // of the field, in that of `values`
 };
 
 std::vector<ColourField> colour_fields() {
   const auto nothing = [](const LogRow&) { return none; };
-  return {{{"Bending moment", "eV", "EI times curvature", false, {}, {}}, &ElementColours::bending_moment, nothing},
+  return {{{"Bending moment", "nN nm", "EI times curvature", false, {}, {}},
+           &ElementColours::bending_moment,
+           nothing,
+           units::nN_nm},
           {{"Bond energy", "eV", "half of the energy of each bond of the element", false, {}, {}},
            &ElementColours::bond_energy,
            bond_energy_of},
@@ -105,6 +109,7 @@ std::vector<ViewField> fields_of(const StoredEvents& events, const std::vector<S
     if (!all) continue;
     for (const StoredFrame& f : frames) {
       colour.field.values.push_back(f.colours.*colour.values);
+      for (double& v : colour.field.values.back()) v /= colour.unit;
       // Times of frames are rounded.
       const auto row = std::find_if(log.begin(), log.end(), [&](const LogRow& r) {
         return r["step"] == static_cast<double>(f.state.step) && std::fabs(r["time_ps"] - f.state.time) < 1e-6;

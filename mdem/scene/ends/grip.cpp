@@ -501,15 +501,15 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
            .that_counts_held(),
        axis_key(0, "held", "\"held\", \"free\", or what it follows: { displacement_nm = ... }, { force_nN = ... }"),
-       axis_key(1, "held", "likewise"),
+       axis_key(1, "held", "as for x"),
        axis_key(2, "held",
-                "likewise, or { strain = ... }; a list is points [[ps, value], ...], or values reached one after "
+                "as for x, or { strain = ... }; a list is points [[ps, value], ...], or values reached one after "
                 "another at rate_nm_per_ps, rate_per_ps or rate_nN_per_ps"),
        axis_key(
            3, "held",
            "rotation about the clamp's own centre: \"held\", \"free\", { rotation_deg = ... }, { rotation_turns "
-           "= ... } or { torque_nN_nm = ... }, with rates likewise"),
-       axis_key(4, "held", "likewise"), axis_key(5, "held", "likewise: twisting"),
+           "= ... } or { torque_nN_nm = ... }, with rates as for z"),
+       axis_key(4, "held", "as for about_x"), axis_key(5, "held", "as for about_x: it twists the rope"),
        Key::boolean("slide_free", &GripLoad::slide_free, standard(),
                     "tubes slide through the clamp along its axis"),
        Key::boolean("spin_free", &GripLoad::spin_free, standard(), "tubes turn about their own axes in the clamp"),
@@ -553,6 +553,13 @@ DriveKind grip_drive() {
 }
 
 SceneTable GripDrive::table() const { return grip_table(); }
+
+std::shared_ptr<const Drive> GripDrive::at_its_end() const {
+  auto out = std::make_shared<GripDrive>(*this);
+  for (GripAxis& axis : out->load.axes)
+    if (axis.is == Is::loaded) axis.points = {{0, axis.points.back().value}};
+  return out;
+}
 
 std::string GripDrive::words() const {
   constexpr std::size_t most = 12;

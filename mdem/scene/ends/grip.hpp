@@ -38,7 +38,8 @@ class GripLoad : public Load {
   int depth = 1;                 // elements of each tube in the clamp
   std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
   bool slide_free = false, spin_free = false, tilt_free = false;
-  double smooth = -1;  // ps, of the corners of all schedules; negative: that of motions follows from the travel of sound
+  double smooth =
+      -1;  // ps, of the corners of all schedules; negative: that of motions follows from the travel of sound
 
   // The grip on these elements of a scene, `depth` of each tube after one another. `free_length`: nm, to which a
   // strain refers; a grip that follows no strain needs none.
@@ -88,6 +89,7 @@ class GripDrive : public Drive {
   SceneTable table() const override;
   std::string words() const override;
   std::string needs_time() const override { return load.needs_time(); }
+  std::shared_ptr<const Drive> at_its_end() const override;
   double lasts() const override { return load.lasts(); }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;

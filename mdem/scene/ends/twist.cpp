@@ -110,12 +110,12 @@ SceneTable TwistDrive::table() const { return twist_table().doc(); }
 
 std::string TwistDrive::words() const {
   return fmt::format(
-      "twist{}: {:.4g} nN nm {} by {} on the grips, ramped in {:.4g} ps, held for {:.4g} ps{}; grips {} along the "
-      "axis, {} sideways{}",
+      "twist{}: {:.4g} nN nm {} by {} on the grips, {}; grips {} along the axis, {} sideways{}",
       load.left_handed ? ", left-handed" : "", load.moment / units::nN_nm,
       load.reading == TwistLoad::Reading::per_tube ? "per tube" : "in total", applied_by(load.application),
-      load.ramp_time(), load.hold,
-      load.unload_rate > 0 ? fmt::format(", taken away in {:.4g} ps", load.unload_time()) : "",
+      held ? "held"
+           : fmt::format("ramped in {:.4g} ps, held for {:.4g} ps{}", load.ramp_time(), load.hold,
+                         load.unload_rate > 0 ? fmt::format(", taken away in {:.4g} ps", load.unload_time()) : ""),
       load.axial_free ? "free" : "held", load.lateral_free ? "free" : "held",
       load.geometric_only ? "; spins relaxed (geometric twist only)" : "");
 }
@@ -125,16 +125,37 @@ void TwistDrive::refuse(const TomlTable& top, const Scene& scene) const {
     throw top.error(
         "twist", "stands beside [[grip]], and both say what the ends do",
         "write the moment into a grip: as = \"each\", about_z = { torque_nN_nm = 35, rate_nN_nm_per_ps = 1 }");
-  if (scene.run.mode == RunOptions::Mode::relax)
-    throw top.error("twist", "a ramp needs time, and run.mode is \"relax\"",
-                    "take mode = \"dynamics\", or a [[load]] of kind \"torque\"");
+  if (scene.run.mode == RunOptions::Mode::relax) refuse_in_relaxation(top, scene);
   if (load.geometric_only && scene.bath())
     throw top.table("twist").error("geometric_only",
                                    "does not go with [thermostat]: the bath turns the spins that it relaxes",
                                    "take one of the two away");
 }
 
+// The moment of its end is held.
+void TwistDrive::refuse_in_relaxation(const TomlTable& top, const Scene& scene) const {
+  const TomlTable t = top.table("twist");
+  if (scene.run.solver == RunOptions::Solver::fire)
+    throw top.error("twist",
+                    "does not go with run.solver = \"fire\", which does not come to rest under a held moment",
+                    "take solver = \"auto\" or \"newton\", or mode = \"dynamics\"");
+  if (load.unload_rate > 0)
+    throw t.error("unload_rate_nN_nm_per_ps", "leaves no moment in the end, and run.mode is \"relax\"",
+                  "take it away, or take mode = \"dynamics\"");
+  if (load.geometric_only)
+    throw t.error("geometric_only", "relaxes spins from time to time, and run.mode is \"relax\"",
+                  "take it away, or take mode = \"dynamics\"");
+}
+
+std::shared_ptr<const Drive> TwistDrive::at_its_end() const {
+  auto out = std::make_shared<TwistDrive>(*this);
+  out->held = true;
+  out->load.rate = out->load.hold = 0;
+  return out;
+}
+
 std::string TwistDrive::needs_time() const {
+  if (held) return "";
   return "the moment of [twist] is ramped, and where a rope ends depends on the way";
 }
 

@@ -81,11 +81,13 @@ void add_twist(const TwistLoad& twist, const Topology& topology, LoadsAndConstra
 class TwistDrive : public Drive {
  public:
   TwistLoad load;
+  bool held = false;  // at_its_end()
 
   SceneTable table() const override;
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   std::string needs_time() const override;
+  std::shared_ptr<const Drive> at_its_end() const override;
   double lasts() const override { return load.ramp_time() + load.hold + load.unload_time() + load.unloaded; }
   void add_loads(const Scene&, const Topology& topology, const Interaction&,
                  LoadsAndConstraints& loads) const override {
@@ -95,6 +97,9 @@ class TwistDrive : public Drive {
   Ends ends() const override { return Ends::loaded; }
   std::string not_for_lammps() const override { return load.geometric_only ? "twist.geometric_only" : ""; }
   std::optional<std::vector<std::pair<std::string, double>>> hastened(double part) const override;
+
+ private:
+  void refuse_in_relaxation(const TomlTable& top, const Scene&) const;
 };
 
 }  // namespace ropewalk

@@ -1,10 +1,13 @@
-// [failure] tubes that break: a bond between two elements breaks for good in the first step in which it is
-// strained, or bends, beyond its limit.
+// [failure] tubes that break: a bond between two elements breaks for good in the first step in which the tube about
+// it is strained, or bends, beyond its limit, or in which the bond itself can carry no more torque.
 //
-//   |x_j - x_i|/a - 1 > strain,   or   bending moment > moment
+//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90 degrees
 //
-// The limit of strain may scatter along the tube, by the seed and the number of the element: the weakest place of a
-// length l has the distribution of W. Weibull (J. Appl. Mech. 18, 293 (1951)),
+// n bonds are about as long as the tube is wide, one where elements are as long as that. So heat, which strains a
+// bond the more the shorter it is, weakens a tube in short elements no more than in long ones. `from = "atoms"`
+// takes the strain up to which atoms were pulled: the force there is the ideal strength at 0 K. The limit of strain
+// may scatter along the tube, by the seed and the number of the element: the weakest place of a length l has the
+// distribution of W. Weibull (J. Appl. Mech. 18, 293 (1951)),
 //
 //   probability that it bears more than e:  exp(-(l/l0) (e/e0)^k)
 //
@@ -35,6 +38,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double never_breaks = std::numeric_limits<double>::infinity();
+constexpr double no_bond = -1;                         // behind the last element of a tube
 constexpr std::uint32_t strain_question = 0xFFFFFFFE;  // a last number of counters that nothing else takes
 
 // k, of a standard deviation of `share` of the mean.
@@ -48,12 +52,15 @@ double weibull_exponent(double share) {
 }
 
 struct FailureLaw {
-  double strain = 0, deviation = 0, reference = 0;  // reference: nm of tube that both belong to
-  double moment = never_breaks;                     // eV
+  double strain = never_breaks, deviation = 0, reference = 0;  // reference: nm of tube that both belong to
+  bool from_atoms = false;
+  double moment = never_breaks;  // eV
   std::uint64_t seed = 1;
 
-  // Of the bond behind each of these elements of `length` nm.
-  std::function<double(int)> strains_of(double length) const {
+  // Of the bond behind each element of such a tube.
+  std::function<double(int)> strains_of(const TubeType& type) const {
+    const double length = type.element_length;
+    if (from_atoms) return [end = end_of_stretch(type.bond.anharmonic)](int) { return end; };
     if (!(deviation > 0)) return [mean = strain](int) { return mean; };
     const double k = weibull_exponent(deviation / strain),
                  scale = strain / std::tgamma(1 + 1 / k) * std::pow(reference / length, 1 / k);
@@ -75,9 +82,10 @@ struct BrokenBond {
 class TubeFailure : public ForceTerm {
  public:
   TubeFailure(FailureLaw law, const Topology& scene) : law_(law), topology_(scene) {
-    limit_.resize(static_cast<std::size_t>(scene.elements()), never_breaks);
+    limit_.resize(static_cast<std::size_t>(scene.elements()), 0);
     for (int t = 0; t < scene.tubes(); ++t) {
-      const auto strain_of = law_.strains_of(scene.type_of(t).element_length);
+      limit_[static_cast<std::size_t>(scene.tube_begin[t + 1] - 1)] = no_bond;
+      const auto strain_of = law_.strains_of(scene.type_of(t));
       for (int i = scene.tube_begin[t]; i + 1 < scene.tube_begin[t + 1]; ++i)
         limit_[static_cast<std::size_t>(i)] = strain_of(scene.original_of(i));
     }
@@ -100,7 +108,7 @@ class TubeFailure : public ForceTerm {
     StateUpdate now;
     for (int t = 0; t < topology_.tubes(); ++t)
       for (int i = topology_.tube_begin[t]; i + 1 < topology_.tube_begin[t + 1]; ++i)
-        if (!topology_.is_image(i) && breaks(topology_.type_of(t), state, i)) {
+        if (!topology_.is_image(i) && breaks(t, state, i)) {
           now.lost += break_at(topology_.type_of(t), state, i);
           ++now.events;
         }
@@ -118,7 +126,7 @@ class TubeFailure : public ForceTerm {
     broken_.assign(limit_.size(), 0);
     for (const TermRecord& r : memory) {
       const std::vector<double>& x = r.numbers;
-      if (x.size() != 4 || !std::isfinite(limit_[static_cast<std::size_t>(r.element)]) ||
+      if (x.size() != 4 || limit_[static_cast<std::size_t>(r.element)] == no_bond ||
           !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
         throw std::runtime_error("the memory of broken tubes is damaged");
       all_.push_back({r.element, x[0], Vector3(x[1], x[2], x[3])});
@@ -138,15 +146,44 @@ class TubeFailure : public ForceTerm {
   std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
 
  private:
-  bool breaks(const TubeType& type, const State& state, int element) const {
+  // By a hair before BondSum::slipping, so that no run ends for a bond that breaks.
+  static bool slips(const Quaternion& from, const Quaternion& to) {
+    const Quaternion turn = from.conjugate() * to;
+    return turn.z() * turn.z() >= (1 - 1e-9) * turn.w() * turn.w();
+  }
+  bool breaks(int tube, const State& state, int element) const {
     const auto i = static_cast<std::size_t>(element);
     if (broken_[i]) return false;
-    const Vector3 d = state.position[i + 1] - state.position[i];
-    const double longest = type.element_length * (1 + limit_[i]);
-    return d.squaredNorm() > longest * longest ||
+    if (slips(state.orientation[i], state.orientation[i + 1])) return true;
+    const TubeType& type = topology_.type_of(tube);
+    const auto [first, last] = about(tube, element);
+    const int bonds = last - first + 1;
+    const double length = bonds * type.element_length;
+    double arc = 0;
+    for (int k = first; k <= last; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      arc += (state.position[at + 1] - state.position[at]).norm();
+    }
+    return arc > length * (1 + limit_[i]) ||
            (law_.moment < never_breaks &&
-            bending_moment(type.bond, type.element_length, axis_of(state.orientation[i]),
-                           axis_of(state.orientation[i + 1])) > law_.moment);
+            bending_moment(type.bond, length, axis_of(state.orientation[static_cast<std::size_t>(first)]),
+                           axis_of(state.orientation[static_cast<std::size_t>(last + 1)])) > law_.moment);
+  }
+  // The bonds about this one, by the elements before them, which are together about as long as the tube is wide.
+  // None of them is broken.
+  std::pair<int, int> about(int tube, int element) const {
+    const TubeType& type = topology_.type_of(tube);
+    const int bonds = std::max(1, static_cast<int>(std::lround(2 * type.radius / type.element_length)));
+    int first = element, last = element;
+    for (bool grows = true; grows && last - first + 1 < bonds;) {
+      grows = false;
+      if (last + 2 < topology_.tube_begin[tube + 1] && !broken_[static_cast<std::size_t>(last + 1)])
+        ++last, grows = true;
+      if (last - first + 1 < bonds && first > topology_.tube_begin[tube] &&
+          !broken_[static_cast<std::size_t>(first - 1)])
+        --first, grows = true;
+    }
+    return {first, last};
   }
   double break_at(const TubeType& type, const State& state, int element) {
     const auto i = static_cast<std::size_t>(element);
@@ -167,7 +204,7 @@ class TubeFailure : public ForceTerm {
   std::vector<int> with_images(int element) const {
     std::vector<int> all = {element};
     for (const int image : {topology_.image_below(element), topology_.image_above(element)})
-      if (image >= 0 && std::isfinite(limit_[static_cast<std::size_t>(image)])) all.push_back(image);
+      if (image >= 0 && limit_[static_cast<std::size_t>(image)] != no_bond) all.push_back(image);
     return all;
   }
 
@@ -187,28 +224,42 @@ class FailureDrive : public Drive {
 
   SceneTable table() const override;
   std::string words() const override {
-    return fmt::format(
-        "tubes break where they are strained by {:.4g}{}{}", law.strain,
-        law.deviation > 0 ? fmt::format(" ± {:.3g} in {:.4g} nm of tube", law.deviation, law.reference) : "",
-        law.moment < never_breaks ? fmt::format(" or bent with {:.4g} nN nm", law.moment / units::nN_nm) : "");
+    std::string strain = law.from_atoms              ? "strained beyond the pull of their atoms"
+                         : law.strain < never_breaks ? fmt::format("strained by {:.4g}", law.strain)
+                                                     : "";
+    if (law.deviation > 0) strain += fmt::format(" ± {:.3g} in {:.4g} nm of tube", law.deviation, law.reference);
+    if (law.moment < never_breaks)
+      strain += fmt::format("{}bent with {:.4g} nN nm", strain.empty() ? "" : " or ", law.moment / units::nN_nm);
+    return "tubes break where they are " + strain;
   }
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     add_term(std::make_shared<TubeFailure>(law, topology), interaction);
-  }
-  void warn(const Scene& scene, const Topology&, const LoadsAndConstraints&,
-            std::vector<std::string>& warnings) const override {
-    for (const ParameterSet& set : scene.sets)
-      if (set.validity.stretch > 0 && law.strain > set.validity.stretch)
-        warnings.push_back(
-            fmt::format("Tubes break at a strain of {:.3g}, and the bonds of {} were fitted up to {:.3g}: what "
-                        "they hold in between is "
-                        "that fit, continued.",
-                        law.strain, set.name, set.validity.stretch));
   }
   std::string why_not_split() const override { return "[failure] has limits of single bonds"; }
   std::string why_not_lengthened() const override { return ""; }
   std::string not_for_lammps() const override { return "failure"; }
 };
+
+// A strain at which the bonds do not follow the atoms any more would make the strength up.
+void refuse_beyond_data(const TomlTable& t, const Scene& scene, const FailureLaw& law) {
+  for (const ParameterSet& set : scene.sets) {
+    const std::string key = law.from_atoms ? "from" : "strain";
+    const double end = scene.bond.anharmonic ? set.end_of_stretch() : set.validity.stretch;
+    if (law.from_atoms ? scene.bond.anharmonic && set.pull : !(law.strain < never_breaks) || law.strain <= end)
+      continue;
+    const std::string what =
+        law.from_atoms ? fmt::format("is \"atoms\", and {}",
+                                     scene.bond.anharmonic ? set.name + " has no pull of atoms until they give way"
+                                                           : "the bonds are harmonic")
+                       : fmt::format("is {:.4g}, and the bonds of {} follow its atoms up to {:.4g}", law.strain,
+                                     set.name, end);
+    std::string remedy = law.from_atoms ? "give a strain of your own" : fmt::format("take at most {:.4g}", end);
+    if (scene.bond.anharmonic && !set.pull)
+      remedy = fmt::format("`ropewalk calibrate pull {}` makes a set that has more, or {}", set.path, remedy);
+    if (!scene.bond.anharmonic && set.pull) remedy = "leave [bond] law out, or " + remedy;
+    throw t.error(key, what, remedy);
+  }
+}
 
 const KeyTable<FailureDrive>& failure_table() {
   using Key = KeyOf<FailureDrive>;
@@ -217,10 +268,14 @@ const KeyTable<FailureDrive>& failure_table() {
       "tubes break; without this table they do not, at whatever load",
       {Key::number(
            "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
-           required("0.16"),
-           "of a bond, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
+           otherwise("0.16", "required but for from and moment_nN_nm"),
+           "of a tube, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
            "0.12 "
            "in experiments (DOI 10.1126/science.287.5453.637)"),
+       Key::word(
+           "from", Words<bool>{{"atoms", true}}, [](auto& d) -> auto& { return d.law.from_atoms; },
+           otherwise("\"atoms\"", "a strain of your own"),
+           "\"atoms\": at the end of the pull of the set, the ideal strength at 0 K"),
        Key::number(
            "strain_deviation", unit::none, Bounds::range(0, 1), [](auto& d) -> auto& { return d.law.deviation; },
            standard(), "standard deviation of that strain along the tubes, as defects make it (Weibull)"),
@@ -235,6 +290,15 @@ const KeyTable<FailureDrive>& failure_table() {
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
            "of the scatter")},
       [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
+        if (!t.has("strain") && !t.has("from") && !t.has("moment_nN_nm"))
+          throw t.error("strain", "is missing", "write one, or from = \"atoms\", or moment_nN_nm");
+        for (const char* key : {"strain", "strain_deviation"})
+          if (failure.law.from_atoms && t.has(key))
+            throw t.error(key, "stands beside from = \"atoms\", which has the strain of tubes without defects",
+                          "give one of them");
+        if (t.has("strain_deviation") && !t.has("strain"))
+          throw t.error("strain_deviation", "stands without strain", "give the mean strain too");
+        refuse_beyond_data(t, scene, failure.law);
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
         if (!(failure.law.reference > 0)) failure.law.reference = scene.parameters().element_length;
         if (failure.law.deviation > 0.34 * failure.law.strain)

@@ -89,6 +89,22 @@ class Tether : public ForceTerm {
     return {within(first_) ? stored() : 0, 0};
   }
 
+  bool add_tangent(const State&, const AddBlock& add) const override {
+    const double d = distance();
+    if (broken_ || away_ || !(d > 0)) return true;
+    const Vector3 along = (ends_[1].centre - ends_[0].centre) / d;
+    const Eigen::Matrix3d pull = k_ * ((1 - rest_ / d) * Eigen::Matrix3d::Identity() + rest_ / d * along * along.transpose());
+    for (int e = 0; e < 2; ++e)
+      for (int f = 0; f < 2; ++f)
+        for (const int i : ends_[e].own)
+          for (const int j : ends_[f].own) {
+            Eigen::Matrix<double, 6, 6> block = Eigen::Matrix<double, 6, 6>::Zero();
+            block.topLeftCorner<3, 3>() = (e == f ? 1 : -1) / (count(ends_[e]) * count(ends_[f])) * pull;
+            add(i, j, block);
+          }
+    return true;
+  }
+
   double stiffness() const override {
     double sum = 0;
     for (const TetherEnd& end : ends_)

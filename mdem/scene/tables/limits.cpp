@@ -12,7 +12,7 @@ struct Text {
 const std::array<Text, limit_count>& texts() {
   static const std::array<Text, limit_count> all = {{
       {standard("19.9"), "bend of one bond: its energy is then 1 % off the rod's"},
-      {standard("19.9"), "twist of one bond: likewise; at 90 it slips"},
+      {standard("19.9"), "twist of one bond: its energy is then 1 % off the rod's; at 90 it slips"},
       {otherwise("0.086", "the set's"), "curvature of a tube"},
       {otherwise("0.043", "the set's, for tubes of this length"), "radius of a tube times its twist per length"},
       {otherwise("0.069", "the set's stretch"), "of a bond, tension or compression"},

@@ -14,7 +14,7 @@ void read_mode(const TomlTable& t, const Scene&, RunOptions& r) {
   const bool relax = r.mode == Mode::relax;
   const std::vector<const char*> others =
       relax ? std::vector<const char*>{"duration_ps"}
-            : std::vector<const char*>{"force_tolerance_nN", "energy_tolerance", "max_steps"};
+            : std::vector<const char*>{"solver", "force_tolerance_nN", "energy_tolerance", "max_steps"};
   for (const char* key : others)
     if (t.has(key))
       throw t.error(key, fmt::format("belongs to mode = \"{}\"", relax ? "dynamics" : "relax"),
@@ -45,7 +45,15 @@ const KeyTable<RunOptions>& run_table() {
       "run",
       "what to do",
       {Key::custom("mode", "", standard("\"dynamics\""),
-                   "\"dynamics\", or \"relax\": to the nearest minimum of the energy", read_mode),
+                   "\"dynamics\", or \"relax\": to a state of rest, under the loads as they are in the end",
+                   read_mode),
+       Key::word(
+           "solver",
+           Words<R::Solver>{
+               {"fire", R::Solver::fire}, {"newton", R::Solver::newton}, {"auto", R::Solver::automatic}},
+           &R::solver, standard(),
+           "relax: \"fire\", down the forces; \"newton\", by the stiffness of the whole, for ropes near rest and "
+           "under couples; \"auto\": FIRE while contacts form, then Newton"),
        Key::custom("time_step_fs", "fs", standard("\"auto\""),
                    "\"auto\": 0.9 of the stability limit; 0.6 from a state file, where heat may_cool, or to relax; "
                    "where warm, positions are at most 2 % hotter than velocities",

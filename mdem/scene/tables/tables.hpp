@@ -21,5 +21,6 @@ const KeyTable<RunOptions>& run_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();
 const KeyTable<StopRule>& stop_table();
+const KeyTable<Expectation>& expect_table();
 
 }  // namespace ropewalk

@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr char magic[8] = "MDEM16";
+constexpr char magic[8] = "MDEM17";
 
 struct CheckpointHead {
   char format[sizeof magic];
@@ -102,6 +102,9 @@ void visit_relaxation(Archive& archive, R& r) {
                   &r.last_step, &r.disturbed_from, &r.fire.dt_max, &r.fire.dt_min, &r.fire.dt, &r.fire.mix})
     archive(*x);
   archive(r.fire.downhill);
+  archive(r.newton.newton);
+  archive(r.newton.saddles);
+  for (auto* x : {&r.newton.rate, &r.newton.falling, &r.newton.saddle_energy}) archive(*x);
 }
 
 template <class Archive, class Self, class List>
@@ -165,12 +168,16 @@ bool could_be(const ListOrigin& list) {
 bool could_be(const Relaxation& r, std::int64_t step, double longest_step) {
   if (!r.underway()) return true;
   const Fire& f = r.fire;
+  const bool fire_goes_on = r.part_began >= 0;
   return r.began <= step && r.part_began <= step && (r.part_began < 0 || r.part_began >= r.began) &&
          all_within(std::array{r.goal.force, r.goal.energy, r.first_energy, r.force, r.constant, r.longest_bond,
                                r.disturbed_from}) &&
-         r.disturbances >= 0 && r.disturbances <= step && std::fabs(r.last_step) < longest_step && f.dt_max > 0 &&
-         f.dt_max < longest_step && f.dt_min >= 0 && f.dt_min <= f.dt && f.dt <= f.dt_max && f.mix >= 0 &&
-         f.mix <= 1 && f.downhill >= 0 && f.downhill <= step;
+         r.disturbances >= 0 && r.disturbances <= step && std::fabs(r.last_step) < longest_step &&
+         (!fire_goes_on ||
+          (f.dt_max > 0 && f.dt_max < longest_step && f.dt_min >= 0 && f.dt_min <= f.dt && f.dt <= f.dt_max &&
+           f.mix >= 0 && f.mix <= 1 && f.downhill >= 0 && f.downhill <= step)) &&
+         all_within(std::array{r.newton.rate, r.newton.falling, r.newton.saddle_energy}) && r.newton.rate >= 0 &&
+         r.newton.falling >= 0 && r.newton.saddles >= 0 && r.newton.saddles <= step;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/contract.hpp"
@@ -358,6 +359,46 @@ bool Simulation::relax(double tolerance, long max_steps, const std::function<boo
   const PartEnd end = relax_part(max_steps, progress);
   end_relaxation();
   return end == PartEnd::small_forces;
+}
+
+NewtonPace& Simulation::relaxation_with(const RelaxGoal& goal) {
+  sync_to_host();
+  if (!(relaxation_.goal == goal)) end_relaxation();
+  if (!relaxation_.underway()) begin_relaxation(goal);
+  return relaxation_.newton;
+}
+
+bool Simulation::relax_by_fire(double force, long most, const std::function<bool(long)>& progress) {
+  ROPEWALK_EXPECTS(relaxation_.underway());
+  relaxation_.force = force;
+  return relax_part(most, progress) != PartEnd::interrupted;
+}
+
+void Simulation::displace(const Vec3Array& velocity, const Vec3Array& angular_velocity) {
+  ROPEWALK_EXPECTS(relaxation_.underway() && relaxation_.part_began < 0);
+  relaxation_.constant = total_energy() - account_.supplied();
+  state_.velocity = velocity;
+  state_.angular_velocity = angular_velocity;
+  constrain(topology_, loads_, state_.time, 0.5, state_);
+  add_work(point_loads_, state_, 0.5, account_, gauges_);
+  move(1);
+  gauges_.follow(state_);
+  ++state_.step;
+  update_list();
+  // Nothing is damped: such steps take no time.
+  State way = state_;
+  state_.velocity.set_to_zero();
+  state_.angular_velocity.set_to_zero();
+  compute(true, 0);
+  std::swap(state_.velocity, way.velocity);
+  std::swap(state_.angular_velocity, way.angular_velocity);
+  add_work(point_loads_, state_, 0.5, account_, gauges_);
+  stand_still();
+}
+
+void Simulation::rest_after(const Relaxed& end) {
+  end_relaxation();
+  if (end.at_rest) rest_ = {state_.step, end.saddles, end.falls};
 }
 
 // If the forces are small and the energy is not, the forces have to become smaller.

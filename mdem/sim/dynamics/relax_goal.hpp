@@ -30,6 +30,15 @@ struct Relaxed {
       0;  // eV: it rests on a saddle beyond which the energy falls by so little, or more; it stayed there
 };
 
+// Where Newton's method stands between two of its steps (sim/statics/newton.hpp).
+struct NewtonPace {
+  bool newton = false;       // false: the relaxation goes by FIRE
+  double rate = 0;           // 1/ps: the shift is its square; 0: it has yet to begin
+  double falling = 0;        // 1/ps: of a motion that was found to fall; 0: none is known
+  std::int64_t saddles = 0;  // that were left
+  double saddle_energy = 0;  // eV, potential less the work of the loads, of the last one
+};
+
 // The state of a relaxation between two of its steps. It has parts: if the forces are small and the energy is
 // not, the next part goes on to smaller forces. If both are small, and yet the energy falls along some motion,
 // the state is moved along it, and the next part goes on from there.
@@ -45,6 +54,7 @@ struct Relaxation {
   std::int64_t disturbances = 0;
   double disturbed_from = 0;  // eV, potential less the work of the loads, before the last one
   Fire fire{0};
+  NewtonPace newton;
 
   bool underway() const { return began >= 0; }
 };

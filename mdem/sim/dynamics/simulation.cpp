@@ -246,9 +246,8 @@ void Simulation::check_forces(bool energies) const {
 void Simulation::check_slip() const {
   if (forces_.slipping_bond >= 0)
     throw NumericalError(state_.step, forces_.slipping_bond,
-                         "the bond to the next element is twisted by 90 degrees, where its torque is largest: it "
-                         "is about to slip and forget a turn",
-                         "lower the twisting moment");
+                         "the bond to the next element is twisted by 90 degrees and cannot carry more torque",
+                         "use shorter elements or less twist, or let such bonds break by [failure]");
 }
 
 // For [twist] with geometric_only.

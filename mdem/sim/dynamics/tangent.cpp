@@ -93,7 +93,8 @@ class Differences {
     rest_.angular_velocity.set_to_zero();
   }
 
-  Tangent tangent() {
+  // `known`: K, where it is known otherwise.
+  Tangent tangent(const Tangent::Matrix* known = nullptr) {
     const Topology& topology = s_.topology();
     const Eigen::Index n = row_of(topology.elements());
     Tangent out;
@@ -117,12 +118,13 @@ class Differences {
                   to.emplace_back(static_cast<int>(row_of(j)) + k, static_cast<int>(row_of(i)) + unknown, -value);
         };
         const auto model = [this](const State& s) { return model_forces(s); };
-        add(difference(group, unknown, false, model), stiffness);
+        if (!known) add(difference(group, unknown, false, model), stiffness);
         add(difference(group, unknown, true, model), damping);
       }
     add_loads(stiffness, damping);
     out.stiffness.resize(n, n);
     out.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
+    if (known) out.stiffness = *known;
     out.damping.resize(n, n);
     out.damping.setFromTriplets(damping.begin(), damping.end());
     out.error = std::max(error_along(out.stiffness, false), error_along(out.damping, true));
@@ -236,6 +238,11 @@ State moved(const State& state, const VectorXd& u, const VectorXd* velocity) {
 Tangent tangent_of(const Simulation& simulation, double step) {
   ROPEWALK_EXPECTS(step > 0);
   return Differences(simulation, step).tangent();
+}
+
+Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness) {
+  constexpr double step = 1e-5;  // nm, of the motion along which the error is found
+  return Differences(simulation, step).tangent(&stiffness);
 }
 
 std::optional<std::vector<char>> free_unknowns(const Simulation& simulation) {

@@ -36,6 +36,9 @@ struct Tangent {
 // turns are as large at the radius of the tube.
 Tangent tangent_of(const Simulation& simulation, double step = 1e-5);
 
+// The same with a K that is known, so that only C is found by differences.
+Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness);
+
 // The state with each element moved by u, and turned; with the velocities of u' (null: at rest).
 State moved(const State& state, const Eigen::VectorXd& u, const Eigen::VectorXd* velocity = nullptr);
 

@@ -44,9 +44,9 @@ __attribute__((always_inline)) inline BondEnergy bond_forces(const TubeType& typ
     const forms::BodyFrame fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
     const forms::Vec separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
     const double share = shear_share(k, a);
-    const forms::BondAction f =
-        anharmonic ? forms::anharmonic_bond(&k, share, a, separation, fi, fj, bond_twist_angle(fi, fj))
-                   : forms::harmonic_bond(&k, share, a, separation, fi, fj);
+    const forms::BondAction f = anharmonic
+                                    ? forms::window_bond(&k, share, a, separation, fi, fj, bond_twist_angle(fi, fj))
+                                    : forms::harmonic_bond(&k, share, a, separation, fi, fj);
     fx[i] = f.force_j.x, fy[i] = f.force_j.y, fz[i] = f.force_j.z;
     ix[i] = f.torque_i.x, iy[i] = f.torque_i.y, iz[i] = f.torque_i.z;
     jx[i] = f.torque_j.x, jy[i] = f.torque_j.y, jz[i] = f.torque_j.z;
@@ -70,6 +70,41 @@ __attribute__((flatten)) BondEnergy anharmonic_forces(const TubeType& type, cons
                                                       const FrameArray& frames, const BondRange& bonds,
                                                       BondArray& out, double& slips) {
   return bond_forces<true>(type, position, frames, bonds, out, slips);
+}
+
+// A loop of its own, so that bonds within the window have the bits of the loop above.
+double largest_strain(const TubeType& type, const Vec3Array& position, const FrameArray& frames,
+                      const BondRange& bonds) {
+  const double *x = position.x.data() + bonds.begin, *y = position.y.data() + bonds.begin,
+               *z = position.z.data() + bonds.begin;
+  const double *tx = frames.t.x.data(), *ty = frames.t.y.data(), *tz = frames.t.z.data();
+  const double a = type.element_length;
+  double largest = -1;
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
+    const std::ptrdiff_t j = i + 1;
+    const double length = std::sqrt(forms::vec_norm2({x[j] - x[i], y[j] - y[i], z[j] - z[i]}));
+    const forms::BodyFrame fi{{}, {}, {tx[i], ty[i], tz[i]}}, fj{{}, {}, {tx[j], ty[j], tz[j]}};  // axes alone
+    largest = std::max(largest, forms::arc_strain(a, length, fi, fj));
+  }
+  return largest;
+}
+
+// Adds to these bonds what the law of stretch adds beyond its window, where few are; returns the energy.
+double add_beyond(const TubeType& type, const Vec3Array& position, const FrameArray& frames, const BondRange& bonds,
+                  BondArray& out) {
+  double energy = 0;
+  for (std::ptrdiff_t i = bonds.from; i < bonds.to; ++i) {
+    const auto at = static_cast<std::size_t>(i), from = static_cast<std::size_t>(bonds.begin + i);
+    const forms::BondAction f =
+        forms::bond_beyond(&type.bond, type.element_length, plain(position[from + 1] - position[from]),
+                           plain(frames[at]), plain(frames[at + 1]));
+    out.force_j.add(at, vector(f.force_j));
+    out.torque_i.add(at, vector(f.torque_i));
+    out.torque_j.add(at, vector(f.torque_j));
+    energy += f.energy.stretch;
+  }
+  return energy;
 }
 
 // Adds the damping of these bonds; returns its power.

@@ -162,6 +162,12 @@ void ForceTerms::add_in_kick(const State& state, const ForceRows& total, const S
     if (w.term->acts_in_kick()) w.term->add_in_kick(state, total, of, out);
 }
 
+std::string ForceTerms::add_tangent(const State& state, const ForceTerm::AddBlock& add) const {
+  for (std::size_t k = 0; k < copied_.size(); ++k)
+    if (!terms_[k].term->add_tangent(state, add)) return terms_[k].term->name();
+  return "";
+}
+
 std::vector<TermAccount> ForceTerms::accounts() const {
   std::vector<TermAccount> all;
   for (std::size_t k = 0; k < copied_.size(); ++k) all.push_back(terms_[k].account);

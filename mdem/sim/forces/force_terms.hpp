@@ -47,6 +47,8 @@ class ForceTerms : private PairWork {
 
   void add_reference(const Topology& topology, const Interaction& in, const State& state, Forces& out) const;
 
+  // The name of the first of the interaction's own terms that has no tangent; empty: all have added theirs.
+  std::string add_tangent(const State& state, const ForceTerm::AddBlock& add) const;
   // Of the interaction's own terms, one after another.
   std::vector<TermAccount> accounts() const;
   // ForceTerm::broken_bonds of the one that has some; null: none has.

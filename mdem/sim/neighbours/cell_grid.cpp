@@ -47,8 +47,8 @@ std::size_t FindNear(const CellSearch& s, const MemberRange* first, const Member
                  dz = ops::Sub(ops::Load(d, s.z + k), z);
       const auto member = ops::Load(di, s.member + k);
       const auto near = ops::Lt(ops::MulAdd(dx, dx, ops::MulAdd(dy, dy, ops::Mul(dz, dz))), reach2);
-      const auto met = ops::And(ops::And(ops::RebindMask(di, near), ops::Gt(member, after)),
-                                ops::FirstN(di, static_cast<std::size_t>(r->end - k)));
+      const auto met =
+          ops::And(ops::And(ops::RebindMask(di, near), ops::Gt(member, after)), ops::FirstN(di, r->end - k));
       count += ops::CompressStore(member, met, di, found + count);
     }
   return count;

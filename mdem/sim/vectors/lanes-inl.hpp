@@ -16,8 +16,7 @@ namespace ops = vec::VEC_SET;
 // Lanes first .. last - 1.
 template <class D>
 VEC_INLINE ops::Mask<D> some_lanes(D d, int first, int last) {
-  return ops::AndNot(ops::FirstN(d, static_cast<std::size_t>(first)),
-                     ops::FirstN(d, static_cast<std::size_t>(last)));
+  return ops::AndNot(ops::FirstN(d, first), ops::FirstN(d, last));
 }
 
 // Loads entries first .. last - 1 from p; the other lanes are zero and are not read. p need not be aligned.

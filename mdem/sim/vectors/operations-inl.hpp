@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <type_traits>
+#include <utility>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -109,6 +109,8 @@ struct VectorOf {
   using T = TFromD<D>;
   typedef T Lanes __attribute__((vector_size(sizeof(T) * D::lanes)));
   typedef typename IntegerOf<sizeof(T)>::Signed Bits __attribute__((vector_size(sizeof(T) * D::lanes)));
+  // Numbers of type T in memory. A store changes nothing else, so that pointers and counts stay in registers.
+  typedef T InMemory __attribute__((vector_size(sizeof(T) * D::lanes), aligned(alignof(T))));
   using Tag = D;
   Lanes raw;
 
@@ -141,13 +143,11 @@ VEC_INLINE constexpr std::size_t Lanes(D) {
 
 template <class D>
 VEC_INLINE Vec<D> Load(D, const TFromD<D>* p) {
-  Vec<D> v;
-  std::memcpy(&v.raw, p, sizeof v.raw);
-  return v;
+  return {*reinterpret_cast<const typename Vec<D>::InMemory*>(p)};
 }
 template <class D>
 VEC_INLINE void Store(Vec<D> v, D, TFromD<D>* p) {
-  std::memcpy(p, &v.raw, sizeof v.raw);
+  *reinterpret_cast<typename Vec<D>::InMemory*>(p) = v.raw;
 }
 // --- arithmetic -----------------------------------------------------------------------------------------
 
@@ -240,18 +240,37 @@ template <class D>
 VEC_INLINE VectorOf<D> And(VectorOf<D> a, VectorOf<D> b) {
   return Vec<D>::of_bits(a.bits() & b.bits());
 }
-template <class D>
-VEC_INLINE TFromD<D> GetLane(VectorOf<D> v) {
-  return v.raw[0];
+
+// --- sums over lanes ------------------------------------------------------------------------------------
+
+// Each time the upper half of the lanes that are left is added to the lower half. The indices of the lanes are
+// arguments of templates, as the compiler may leave a loop over them as it is.
+template <std::size_t apart, class D, std::size_t... k>
+VEC_INLINE VectorOf<D> AddLanesApart(VectorOf<D> v, std::index_sequence<k...> all) {
+  if constexpr (apart == 0) {
+    return v;
+  } else {
+    const VectorOf<D> sums{v.raw + __builtin_shufflevector(v.raw, v.raw, (k ^ apart)...)};
+    return AddLanesApart<apart / 2>(sums, all);
+  }
 }
-// The sum in all lanes.
+// The sums of the two halves of a in the lower half, those of b in the upper half.
+template <class D, std::size_t... k>
+VEC_INLINE VectorOf<D> AddHalves(VectorOf<D> a, VectorOf<D> b, std::index_sequence<k...>) {
+  constexpr std::size_t half = sizeof...(k) / 2;
+  return {__builtin_shufflevector(a.raw, b.raw, (k < half ? k : k + half)...) +
+          __builtin_shufflevector(a.raw, b.raw, (k < half ? k + half : k + 2 * half)...)};
+}
 template <class D>
-VEC_INLINE Vec<D> SumOfLanes(D d, VectorOf<D> v) {
-  TFromD<D> part[D::lanes];
-  Store(v, d, part);
-  for (std::size_t half = D::lanes / 2; half > 0; half /= 2)
-    for (std::size_t k = 0; k < half; ++k) part[k] += part[k + half];
-  return Set(d, part[0]);
+VEC_INLINE TFromD<D> SumOfLanes(VectorOf<D> v) {
+  return AddLanesApart<D::lanes / 2>(v, std::make_index_sequence<D::lanes>()).raw[0];
+}
+// Both sums for the price of one, with the same bits.
+template <class D>
+VEC_INLINE std::pair<TFromD<D>, TFromD<D>> SumsOfLanes(VectorOf<D> a, VectorOf<D> b) {
+  constexpr std::make_index_sequence<D::lanes> all;
+  const VectorOf<D> sums = AddLanesApart<D::lanes / 4>(AddHalves(a, b, all), all);
+  return {sums.raw[0], sums.raw[D::lanes / 2]};
 }
 
 // --- comparisons and masks ------------------------------------------------------------------------------
@@ -301,11 +320,6 @@ VEC_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
   return IfThenElse(m, yes, Zero(D()));
 }
 template <class D>
-VEC_INLINE Mask<D> FirstN(D, std::size_t n) {
-  const std::uint32_t first = static_cast<std::uint32_t>(std::min<std::size_t>(n, D::lanes));
-  return {static_cast<typename Mask<D>::Raw>((1U << first) - 1U)};
-}
-template <class D>
 VEC_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
   return {static_cast<typename Mask<D>::Raw>(a.raw & b.raw)};
 }
@@ -344,14 +358,6 @@ VEC_INLINE VectorOf<D> IfThenElse(Mask<D> m, VectorOf<D> yes, VectorOf<D> no) {
 template <class D>
 VEC_INLINE VectorOf<D> IfThenElseZero(Mask<D> m, VectorOf<D> yes) {
   return Vec<D>::of_bits(m.raw & yes.bits());
-}
-template <class D>
-VEC_INLINE Mask<D> FirstN(D, std::size_t n) {
-  using Bits = typename VectorOf<D>::Bits;
-  using I = typename IntegerOf<sizeof(TFromD<D>)>::Signed;
-  Bits place;
-  for (std::size_t k = 0; k < D::lanes; ++k) place[k] = static_cast<I>(k);
-  return {place < static_cast<I>(std::min<std::size_t>(n, D::lanes)) - Bits{}};
 }
 template <class D>
 VEC_INLINE MaskOf<D> And(MaskOf<D> a, MaskOf<D> b) {
@@ -394,6 +400,20 @@ VEC_INLINE Vec<D> VecFromMask(D, Mask<D> m) {
 }
 #endif
 
+// No arithmetic with n, of which the compiler makes a branch.
+template <class D, std::size_t... k>
+VEC_INLINE Mask<D> LanesBelow(D, int n, std::index_sequence<k...>) {
+#if VEC_TARGET == VEC_AVX512
+  using I = Simd<std::int32_t, D::lanes>;
+#else
+  using I = RebindToSigned<D>;
+#endif
+  return {Lt(Vec<I>{typename Vec<I>::Lanes{k...}}, Set(I(), n)).raw};
+}
+template <class D>
+VEC_INLINE Mask<D> FirstN(D d, int n) {
+  return LanesBelow(d, n, std::make_index_sequence<D::lanes>());
+}
 template <class D>
 VEC_INLINE Mask<D> Gt(VectorOf<D> a, VectorOf<D> b) {
   return Lt(b, a);

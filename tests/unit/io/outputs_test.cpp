@@ -14,6 +14,7 @@
 #include "observe/observables.hpp"
 #include "outputs_page.hpp"
 #include "report/tensile.hpp"
+#include "report/torsion.hpp"
 #include "run/events_file.hpp"
 #include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
@@ -37,7 +38,10 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
   EXPECT_EQ(outputs_table("`events.csv`"), columns_markdown(event_columns()));
-  EXPECT_EQ(outputs_table("`ropewalk compare --tensile --csv`"), columns_markdown(tensile_columns()));
+  EXPECT_EQ(outputs_table("`ropewalk compare --tensile --csv`"), columns_markdown(tensile_kind().columns));
+  EXPECT_EQ(outputs_table("`ropewalk compare --torsion --csv`"), columns_markdown(torsion_kind().columns));
+  EXPECT_EQ(outputs_table("Limits in tables of runs"), columns_markdown(limit_columns()));
+  EXPECT_EQ(outputs_table("Results in tables of runs"), columns_markdown(result_columns()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("`ropewalk modes --csv`"), columns_markdown(mode_columns()));
   EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));

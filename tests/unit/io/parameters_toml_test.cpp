@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "io/files.hpp"
@@ -74,6 +76,46 @@ TEST(Correlations, ThatCannotBeAreRefused) {
                       "matrix = [[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]]\n"),
               HasSubstr("not one of correlations"));
   EXPECT_THAT(message(std::string(group) + group), HasSubstr("a second time"));
+}
+
+TEST(PullOfASet, IsWrittenAsItIsRead) {
+  const ParameterSet set = read_parameters(path), again = parameters_of_text(parameters_text(set, ""), "set.toml");
+  ASSERT_TRUE(set.pull && again.pull);
+  EXPECT_EQ(set.pull->end, again.pull->end);
+  EXPECT_EQ(set.end_of_stretch(), set.pull->end);
+  for (std::size_t k = 0; k <= PULL_STEPS; ++k)
+    EXPECT_NEAR(set.pull->force[k], again.pull->force[k], 1e-6 * set.pull->force[k]) << k;
+  ParameterSet without = set;
+  const auto begin = std::find_if(without.quantities.begin(), without.quantities.end(),
+                                  [](const Quantity& q) { return q.key == "bond.pull.end"; });
+  ASSERT_NE(begin, without.quantities.end());
+  without.quantities.erase(begin);
+  const ParameterSet old = parameters_of_text(parameters_text(without, ""), "set.toml");
+  EXPECT_FALSE(old.pull);
+  EXPECT_EQ(old.end_of_stretch(), old.anharmonic->max_strain);
+}
+
+TEST(PullOfASet, ThatCannotBeIsRefused) {
+  const auto message = [](const std::function<void(ParameterSet&)>& change) {
+    ParameterSet set = read_parameters(path);
+    change(set);
+    try {
+      parameters_of_text(parameters_text(set, ""), "set.toml");
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  const auto put_end = [](ParameterSet& set, double end) {
+    for (Quantity& q : set.quantities)
+      if (q.key == "bond.pull.end") q.value = end;
+  };
+  EXPECT_EQ(message([](ParameterSet&) {}), "accepted");
+  EXPECT_THAT(message([](ParameterSet& s) { s.pull->force[5] = s.pull->force[4]; }),
+              HasSubstr("bond.pull.force: does not rise from value 4 to value 5"));
+  EXPECT_THAT(message([](ParameterSet& s) { s.pull->force[0] *= 1.2; }), HasSubstr("calibrate the set anew"));
+  EXPECT_THAT(message([&](ParameterSet& s) { put_end(s, 0.01); }), HasSubstr("bond.pull.end"));
+  EXPECT_THAT(message([&](ParameterSet& s) { put_end(s, 0.9); }), HasSubstr("rises too little"));
 }
 
 TEST(MeasuredText, HasAsManyDigitsAsTheErrorAllows) {

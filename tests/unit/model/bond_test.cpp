@@ -37,14 +37,16 @@ BondForce force(const BondPose& p, const BondStiffness& k = test::published_bond
   return bond_energy_and_gradient(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj));
 }
 
-enum class Form { published, shearing, anharmonic };
+enum class Form { published, shearing, anharmonic, pulled };
 BondStiffness bond_of(Form form) {
   if (form == Form::anharmonic) return test::anharmonic_bond();
+  if (form == Form::pulled) return test::pulled_bond();
   return form == Form::shearing ? shearing_bond() : test::published_bond();
 }
 
 class BondForms : public ::testing::TestWithParam<Form> {};
-INSTANTIATE_TEST_SUITE_P(All, BondForms, ::testing::Values(Form::published, Form::shearing, Form::anharmonic));
+INSTANTIATE_TEST_SUITE_P(All, BondForms,
+                         ::testing::Values(Form::published, Form::shearing, Form::anharmonic, Form::pulled));
 
 TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
   const BondStiffness k = bond_of(GetParam());
@@ -56,7 +58,7 @@ TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
     const BondPose p = random_pose(random, n % 2 ? 0.2 : 2.0);
     const BondForce f = force(p, k);
     // The stiffness of the anharmonic bond jumps at the edges of its window.
-    const bool kinks = GetParam() == Form::anharmonic;
+    const bool kinks = GetParam() == Form::anharmonic || GetParam() == Form::pulled;
     const double h = kinks ? 1e-6 : 1e-3,
                  tight = (kinks ? 1e-5 : 1e-7) * std::max({f.force_j.norm(), f.torque_i.norm(), 1.0});
     for (int a = 0; a < 3; ++a) {
@@ -154,6 +156,53 @@ TEST(AnharmonicBond, GoesOnBeyondItsWindow) {
   }
   for (const double edge : {k.anharmonic.min_strain, k.anharmonic.max_strain})
     EXPECT_NEAR(stretched(edge - 1e-9).force_j.z(), stretched(edge + 1e-9).force_j.z(), 1e-3);
+}
+
+// Energy, force and slope of stretch alone (eV/nm) belong together, at the edges of the window, of the steps of the
+// pull and of its end.
+TEST(AnharmonicBond, LawOfStretchIsOneEnergy) {
+  for (const BondStiffness& k : {test::anharmonic_bond(), test::pulled_bond()}) {
+    const Anharmonic& h = k.anharmonic;
+    const auto energy = [&](double e) {
+      return 0.5 * k.stretch * e * e + strain_energy(h, e, 0).energy + stretch_beyond(h, k.stretch, e).energy;
+    };
+    const auto force = [&](double e) {
+      return k.stretch * e + strain_energy(h, e, 0).by_strain + stretch_beyond(h, k.stretch, e).by_strain;
+    };
+    const double step = (0.2 - h.max_strain) / PULL_STEPS;
+    for (double e = 0.001; e < 0.3; e += 0.0007)
+      EXPECT_NEAR(test::derivative([&](double d) { return energy(e + d); }, 1e-5) / force(e), 1, 1e-6) << e;
+    for (double e = h.max_strain + 0.0003; e < 0.2; e += step / 5)
+      EXPECT_NEAR(test::derivative([&](double d) { return force(e + d); }, 1e-5),
+                  k.stretch + stretch_beyond(h, k.stretch, e).by_strain2, 1e-3)
+          << e;
+    for (int n = 0; n <= PULL_STEPS; ++n) {
+      const double e = h.max_strain + n * step;
+      EXPECT_NEAR(force(e - 1e-9), force(e + 1e-9), 1e-3) << e;
+      EXPECT_NEAR(energy(e - 1e-9), energy(e + 1e-9), 1e-3) << e;
+    }
+  }
+}
+
+// The forces of the pull, and none beyond its end; no stiffness beyond the window is above that at its edge.
+TEST(AnharmonicBond, BeyondItsWindowItHasTheForcesOfThePull) {
+  const BondStiffness with = test::pulled_bond(), without = test::anharmonic_bond();
+  const Frame rest = frame_of(Quaternion::Identity());
+  const double a = 1.36;
+  const auto pull = [&](const BondStiffness& k, double e) {
+    return -bond_energy_and_gradient(k, a, Vector3(0, 0, a * (1 + e)), rest, rest).force_j.z();
+  };
+  const double table[] = {694, 768, 832, 888, 936, 976, 1004, 1018};
+  for (int n = 1; n <= PULL_STEPS; ++n)
+    EXPECT_NEAR(pull(with, 0.08 + n * 0.015), table[n - 1], 1e-6 * table[n - 1]) << n;
+  for (const double e : {0.21, 0.3, 0.6}) EXPECT_NEAR(pull(with, e), 1018, 1e-6);
+  for (const double e : {-0.2, -0.06, -0.01, 0.0, 0.03, 0.0799}) EXPECT_EQ(pull(with, e), pull(without, e)) << e;
+  const double edge = edge_of_window(with.anharmonic, with.stretch).slope;
+  for (const BondStiffness& k : {with, without})
+    for (double e = 0.081; e < 0.5; e += 0.003)
+      EXPECT_LT((pull(k, e + 1e-4) - pull(k, e)) / 1e-4, 1.0001 * edge) << e;
+  EXPECT_LT((pull(without, -0.2) - pull(without, -0.201)) / 1e-3, 1.0001 * with.stretch)
+      << "nor does it stiffen in compression";
 }
 
 // The parts and the published combination B1 .. B4 are one energy.

@@ -125,6 +125,23 @@ TEST(Limits, PressIsTheNearestDistanceOfTheAxes) {
   EXPECT_FALSE(peak_of(peaks(topology, s, list, {{limits}, {1.5}}), "press_nm").passed());
 }
 
+// A bond belongs to both of its elements.
+TEST(Limits, PlacesNameTheClamp) {
+  Topology topology = published_topology();
+  topology.add_tube(6);
+  topology.add_tube(6);
+  std::vector<Held> held(12, Held::free);
+  held[0] = held[11] = Held::clamped;
+  held[6] = held[8] = Held::loaded;
+  EXPECT_EQ(place_in_words(topology, held, 0), "tube 0, element 0, at the lower clamp");
+  EXPECT_EQ(place_in_words(topology, held, 1), "tube 0, element 1");
+  EXPECT_EQ(place_in_words(topology, held, 5), "tube 0, element 5") << "the next element is of another tube";
+  EXPECT_EQ(place_in_words(topology, held, 6), "tube 1, element 0, at the loaded lower end");
+  EXPECT_EQ(place_in_words(topology, held, 7), "tube 1, element 1, at a loaded place");
+  EXPECT_EQ(place_in_words(topology, held, 10), "tube 1, element 4, at the upper clamp");
+  EXPECT_EQ(place_in_words(topology, {}, 10), "tube 1, element 4");
+}
+
 TEST(LimitsFile, ReadsBackWhatWasWritten) {
   LimitsFile out;
   out.limits = {{"bend_deg", "deg", 19.9, 23.4, 1.5, 2, 17, true, 1.25, 640}, {}};

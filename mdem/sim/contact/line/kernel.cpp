@@ -3,7 +3,7 @@
 //
 // One element i at a time against vectors of consecutive nodes of its neighbours, at separations d from the centre
 // of i. The nodes of i are at s_k n, so that all of them share |d|^2 and d.n:
-//   X_k = |d - s_k n|^2 = |d|^2 + s_k (s_k - 2 d.n),   g_k = -2/delta u'(y(X_k)) w   (force per separation)
+//   X_k = |d - s_k n|^2 = |d|^2 + s_k^2 - 2 s_k d.n,   g_k = -2/delta u'(y(X_k)) w   (force per separation)
 //   force on the node  f = sum_k g_k (d - s_k n) = A d - B n,   A = sum_k g_k,   B = sum_k s_k g_k
 //   on i: force -sum f, torque sum_k s_k n x (-g_k (d - s_k n)) = -n x sum B d
 #include <type_traits>
@@ -153,7 +153,7 @@ VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<
     At::sum_up(d, form.c, at, sum);
     for (int k = 0; k < K; ++k) u[k] = ops::IfThenElseZero(ops::Lt(X[k], cutoff2), sum[k]);
   }
-  if (ops::AllFalse(d, ops::Lt(nearest, core2))) return;
+  if (__builtin_expect(ops::AllFalse(d, ops::Lt(nearest, core2)), true)) return;
   for (int k = 0; k < K; ++k) {
     const auto in_core = ops::Lt(X[k], core2);
     const auto rho = ops::Sqrt(ops::Max(X[k], ops::Set(d, static_cast<T>(1e-12) / (t.unit * t.unit))));
@@ -171,19 +171,6 @@ VEC_INLINE void radial(D d, const Table& t, const ops::Vec<D> (&X)[K], ops::Vec<
   }
 }
 
-template <class D>
-VEC_INLINE double total(D d, ops::Vec<D> v) {
-  return static_cast<double>(ops::GetLane(ops::SumOfLanes(d, v)));
-}
-
-// The sums of the lanes of six vectors, force and moment.
-template <class V>
-VEC_INLINE void totals(V fx, V fy, V fz, V mx, V my, V mz, double (&f)[3], double (&m)[3]) {
-  const ops::DFromV<V> d;
-  f[0] = total(d, fx), f[1] = total(d, fy), f[2] = total(d, fz);
-  m[0] = total(d, mx), m[1] = total(d, my), m[2] = total(d, mz);
-}
-
 // The contact of one element. N is the number of its nodes where the compiler knows it, or 0.
 template <bool energies, int N, class In>
 struct ElementContact {
@@ -193,8 +180,8 @@ struct ElementContact {
   using D = typename L::D;
   using V = ops::Vec<D>;
   static constexpr int lanes = static_cast<int>(ops::Lanes(D()));
-  // Nodes of the element whose polynomials are evaluated at once: as many as the registers hold.
-  static constexpr int at_once = N == 0 ? 2 : VEC_TARGET <= VEC_AVX512 ? std::min(N, 6) : (N + 1) / ((N + 2) / 3);
+  // Pairs of opposite nodes of the element whose polynomials are evaluated at once: as many as the registers hold.
+  static constexpr int at_once = VEC_TARGET <= VEC_AVX512 && N > 0 ? std::min(N / 2, 3) : 1;
 
   const In& in;
   typename In::Coordinate centre[3];
@@ -233,41 +220,46 @@ struct ElementContact {
     const D d;
     const V ahead = ops::Max(ops::Sub(ops::Abs(nodes.along), ops::Set(d, pair.half)), ops::Zero(d));
     const V least = ops::MulAdd(ahead, ahead, ops::NegMulAdd(nodes.along, nodes.along, nodes.square));
-    return ops::bits_of_mask(d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)),
-                                         ops::FirstN(d, static_cast<std::size_t>(count))));
+    return ops::bits_of_mask(d, ops::And(ops::Lt(least, ops::Set(d, pair.table.cutoff2)), ops::FirstN(d, count)));
   }
 
   // Sums over nodes of the element: A and B, and the energy.
   struct NodeSums {
-    V A[2], B[2], u;
+    V A, B, u;
   };
-  // K nodes, from s on. Two sums of each, as one addition waits for the last one.
-  template <int K>
+  // Nodes at s[k] and -s[k], which share |d|^2 + s^2, and where `middle` the one at the centre.
+  template <int pairs, bool middle>
   VEC_INLINE void add_nodes(const Table& table, const T* s, V square, V twice_along, NodeSums& sums) {
+    constexpr int K = 2 * pairs + middle;
     const D d;
     V X[K], u[K], slope[K];
-    for (int k = 0; k < K; ++k) {
-      const V sk = ops::Set(d, s[k]);
-      X[k] = ops::MulAdd(sk, ops::Sub(sk, twice_along), square);
+    for (int k = 0; k < pairs; ++k) {
+      const V sk = ops::Set(d, s[k]), either = ops::Add(square, ops::Set(d, s[k] * s[k]));
+      X[2 * k] = ops::NegMulAdd(sk, twice_along, either);
+      X[2 * k + 1] = ops::MulAdd(sk, twice_along, either);
     }
+    if constexpr (middle) X[K - 1] = square;
     radial<energies>(d, table, X, u, slope);
-    for (int k = 0; k < K; ++k) {
-      sums.A[k % 2] = ops::Add(sums.A[k % 2], slope[k]);
-      sums.B[k % 2] = ops::MulAdd(ops::Set(d, s[k]), slope[k], sums.B[k % 2]);
-      if constexpr (energies) sums.u = ops::Add(sums.u, u[k]);
+    if constexpr (middle) sums.A = ops::Add(sums.A, slope[K - 1]);
+    for (int k = 0; k < pairs; ++k) {
+      sums.A = ops::Add(sums.A, ops::Add(slope[2 * k], slope[2 * k + 1]));
+      sums.B = ops::MulAdd(ops::Set(d, s[k]), ops::Sub(slope[2 * k], slope[2 * k + 1]), sums.B);
     }
+    if constexpr (energies)
+      for (int k = 0; k < K; ++k) sums.u = ops::Add(sums.u, u[k]);
   }
   VEC_INLINE void add_nodes_of_element(const PairTables<Table>& pair, V square, V twice_along, NodeSums& sums) {
-    const T* s = pair.s.data();
     const int nodes = N > 0 ? N : static_cast<int>(pair.s.size());
+    const T* const s = pair.s.data() + (nodes + 1) / 2;
     int k = 0;
-    for (; k + at_once <= nodes; k += at_once) add_nodes<at_once>(pair.table, s + k, square, twice_along, sums);
-    constexpr int last = N % at_once;
-    if constexpr (N == 0) {
-      if (k < nodes) add_nodes<1>(pair.table, s + k, square, twice_along, sums);
-    } else if constexpr (last > 0) {
-      add_nodes<last>(pair.table, s + k, square, twice_along, sums);
+    if constexpr (N % 2 == 1) {
+      add_nodes<at_once, true>(pair.table, s, square, twice_along, sums);
+      k = at_once;
+    } else if constexpr (N == 0) {
+      if (nodes % 2 == 1) add_nodes<0, true>(pair.table, s, square, twice_along, sums);
     }
+    for (; k + at_once <= nodes / 2; k += at_once)
+      add_nodes<at_once, false>(pair.table, s + k, square, twice_along, sums);
   }
 
   // Keeps the vectors of nodes of a span of which some are in reach. The sums over them come later: so the many
@@ -286,7 +278,7 @@ struct ElementContact {
       T* const to = found.add(first, lanes);
       for (int a = 0; a < 3; ++a) ops::Store(nodes.separation[a], d, to + a * lanes);
       // Lanes of no node of this span are put out of reach.
-      const auto own = ops::FirstN(d, static_cast<std::size_t>(end - first));
+      const auto own = ops::FirstN(d, end - first);
       ops::Store(ops::IfThenElse(own, nodes.square, ops::Set(d, pair.far2)), d, to + 3 * lanes);
       ops::Store(ops::Add(nodes.along, nodes.along), d, to + 4 * lanes);
     }
@@ -297,10 +289,9 @@ struct ElementContact {
     const V zero = ops::Zero(d), weight = ops::Set(d, pair.weight);
     for (int v = 0; v < found.count; ++v) {
       const T* const nodes = found.at(v, lanes);
-      NodeSums sums{{zero, zero}, {zero, zero}, zero};
+      NodeSums sums{zero, zero, zero};
       add_nodes_of_element(pair, ops::Load(d, nodes + 3 * lanes), ops::Load(d, nodes + 4 * lanes), sums);
-      const V A = ops::Mul(ops::Add(sums.A[0], sums.A[1]), weight),
-              B = ops::Mul(ops::Add(sums.B[0], sums.B[1]), weight);
+      const V A = ops::Mul(sums.A, weight), B = ops::Mul(sums.B, weight);
       if constexpr (energies) energy = ops::MulAdd(sums.u, ops::Set(d, pair.energy_weight), energy);
       const auto first = static_cast<std::size_t>(found.first[static_cast<std::size_t>(v)]);
       T* const on[3] = {forces.x.data() + first, forces.y.data() + first, forces.z.data() + first};
@@ -316,8 +307,11 @@ struct ElementContact {
 
   VEC_INLINE void give(std::size_t element, std::size_t at, ContactBuffer<T>& out) const {
     double f[3], m[3];
-    totals(force[0], force[1], force[2], moment[0], moment[1], moment[2], f, m);
-    for (double& a : m) a *= in.unit;
+    for (int a = 0; a < 3; ++a) {
+      const auto [of_force, of_moment] = ops::SumsOfLanes(force[a], moment[a]);
+      f[a] = static_cast<double>(of_force);
+      m[a] = static_cast<double>(of_moment) * in.unit;
+    }
     const double nx = in.axis->x[element], ny = in.axis->y[element], nz = in.axis->z[element];
     out.fx[at] -= static_cast<T>(f[0]);
     out.fy[at] -= static_cast<T>(f[1]);
@@ -325,7 +319,7 @@ struct ElementContact {
     out.tx[at] -= static_cast<T>(ny * m[2] - nz * m[1]);
     out.ty[at] -= static_cast<T>(nz * m[0] - nx * m[2]);
     out.tz[at] -= static_cast<T>(nx * m[1] - ny * m[0]);
-    if constexpr (energies) out.energy += total(D(), energy);
+    if constexpr (energies) out.energy += static_cast<double>(ops::SumOfLanes(energy));
   }
 };
 

@@ -67,6 +67,7 @@ VEC_INLINE void position_row(const Component (&of)[3], int elements, int each, c
   const ops::CappedTag<double, NodeOffsets::padding> wide;
   if (each <= static_cast<int>(ops::Lanes(narrow))) return position_row<1>(narrow, of, elements, each, s, to);
   if (each <= static_cast<int>(ops::Lanes(wide))) return position_row<1>(wide, of, elements, each, s, to);
+  if (each <= 2 * static_cast<int>(ops::Lanes(wide))) return position_row<2>(wide, of, elements, each, s, to);
   position_row<0>(wide, of, elements, each, s, to);
 }
 

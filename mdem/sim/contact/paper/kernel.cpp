@@ -86,7 +86,7 @@ VEC_INLINE void add_span(const Block<T>& s, std::size_t at, std::size_t count, s
   const ops::CappedTag<T, 8> d;
   const std::size_t lanes = ops::Lanes(d);
   for (std::size_t m = 0; m < count; m += lanes) {
-    const auto wanted = ops::FirstN(d, count - m);
+    const auto wanted = ops::FirstN(d, static_cast<int>(count - m));
     T* out = to + first + m;
     for (int k = 0; k < 6; ++k, out += stride) {
       const auto f = ops::IfThenElseZero(wanted, ops::Load(d, s.pair[fx + k] + at + m));

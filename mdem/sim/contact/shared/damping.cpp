@@ -175,7 +175,7 @@ VEC_INLINE double all_groups(const ContactViscosity& viscosity, const Of& of,
   auto power = ops::Zero(d);
   int groups = 0;
   const auto add_up = [&]() VEC_ATTR {
-    sum += static_cast<double>(ops::GetLane(ops::SumOfLanes(d, power)));
+    sum += static_cast<double>(ops::SumOfLanes(power));
     power = ops::Zero(d);
   };
   const DampedBlock* const all = blocks.data() + blocks.size();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/contract.hpp"
+#include "sim/forces/pair_stiffness.hpp"
 
 namespace ropewalk {
 namespace {
@@ -60,6 +61,22 @@ class TubeEnds : public ForceTerm {
     return sum;
   }
 
+  bool add_tangent(const State& state, const AddBlock& add) const override {
+    for (const Joint& joint : joints_) {
+      const auto forces = [&](const Pose& below, const Pose& above) {
+        const JointForce f = force_of(joint, below, above);
+        return PairVector(
+            (PairVector() << -f.force_above, f.torque_below, f.force_above, f.torque_above).finished());
+      };
+      const PairMatrix k = pair_stiffness(forces, pose_of(state, joint.below), pose_of(state, joint.above));
+      add(joint.below, joint.below, k.topLeftCorner<6, 6>());
+      add(joint.below, joint.above, k.topRightCorner<6, 6>());
+      add(joint.above, joint.below, k.bottomLeftCorner<6, 6>());
+      add(joint.above, joint.above, k.bottomRightCorner<6, 6>());
+    }
+    return true;
+  }
+
   // Two elements that swing against each other along their line.
   double stiffness() const override {
     double most = 0;
@@ -71,11 +88,13 @@ class TubeEnds : public ForceTerm {
 
  private:
   JointForce force_of(const Joint& joint, const State& state) const {
+    return force_of(joint, pose_of(state, joint.below), pose_of(state, joint.above));
+  }
+  JointForce force_of(const Joint& joint, const Pose& below, const Pose& above) const {
     const EndContact& contact = contacts_[joint.contact];
-    const auto i = static_cast<std::size_t>(joint.below), j = static_cast<std::size_t>(joint.above);
-    const Vector3 t_i = axis_of(state.orientation[i]), t_j = axis_of(state.orientation[j]);
+    const Vector3 t_i = axis_of(below.orientation), t_j = axis_of(above.orientation);
     const Vector3 arm_i = joint.half_below * t_i, arm_j = -joint.half_above * t_j;
-    const Vector3 d = state.position[j] + arm_j - state.position[i] - arm_i, both = t_i + t_j;
+    const Vector3 d = above.position + arm_j - below.position - arm_i, both = t_i + t_j;
     const double length = both.norm();
     JointForce out;
     if (!(length > 0.1)) return out;  // they point against each other

@@ -160,14 +160,42 @@ TEST(Failure, BreaksWhereATubeIsBentTooFar) {
   Scene scene = scene_of_text(
       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 30\n"
       "[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nx = "
-      "\"free\"\nz = \"free\"\nabout_y = { rotation_deg = 120, rate_deg_per_ps = 2 }\n[failure]\nstrain = "
-      "0.5\nmoment_nN_nm = "
+      "\"free\"\nz = \"free\"\nabout_y = { rotation_deg = 120, rate_deg_per_ps = 2 }\n[failure]\nmoment_nN_nm = "
       "15\n"
       "[run]\nduration_ps = 60\n",
       "failure.toml");
   Simulation s = begun(scene);
   while (s.state().time < 60 && broken(s) == 0) s.step();
   EXPECT_GE(broken(s), 1);
+}
+
+// Without [failure] the run ends there.
+TEST(Failure, BreaksWhereATubeIsTwistedTooFar) {
+  const auto twisted = [](const std::string& failure) {
+    return scene_of_text(
+        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 6\n[bond]\nlaw = "
+        "\"harmonic\"\n[contact]\nlaw = \"none\"\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = "
+        "{ rotation_deg = 600, rate_deg_per_ps = 20 }\n" +
+            failure + "[run]\nduration_ps = 40\n",
+        "failure.toml");
+  };
+  Simulation s = begun(twisted("[failure]\nstrain = 0.5\n"));
+  const auto largest_twist = [&s] {
+    double most = 0;
+    const State& state = s.state();
+    for (std::size_t i = 0; i + 1 < state.size(); ++i)
+      most = std::max(
+          most, std::fabs(bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]))));
+    return most;
+  };
+  double before = 0;
+  while (s.state().time < 40 && broken(s) == 0) before = largest_twist(), s.step();
+  EXPECT_EQ(broken(s), 1);
+  EXPECT_NEAR(before, 0.5 * units::pi, 0.02);
+  s.steps(100);
+  EXPECT_EQ(s.tubes_now().tubes(), 2);
+  Simulation whole = begun(twisted(""));
+  EXPECT_THROW(whole.steps(100000), NumericalError);
 }
 
 // The pressure on the tubes of the scene, whatever has become of them.
@@ -241,6 +269,34 @@ TEST(Failure, ATubeIsAsStrongInElementsOfAnyLength) {
   }
 }
 
+// Of a tube in elements of two, one and half a diameter that is strained everywhere alike but for one place, which
+// is as long as half a diameter: the strain over a diameter counts.
+TEST(Failure, TheStrainOverADiameterCounts) {
+  constexpr double own = 1.3775870846515064;
+  for (const double length : {0.5 * own, own, 2 * own}) {
+    Scene scene = scene_of_text(
+        fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\nelement_length_nm = "
+                    "{:.17g}\n[chain]\nelements = 21\n[contact]\nlaw = \"none\"\n[failure]\nstrain = 0.05\n"
+                    "[run]\nduration_ps = 1\n",
+                    length),
+        "failure.toml");
+    const Prepared p = prepare(scene);
+    const auto breaks = [&](double strain, double more) {
+      State s = p.state;
+      for (std::size_t i = 0; i < s.size(); ++i)
+        s.position.z[i] = (1 + strain) * p.state.position.z[i] + (i > 10 ? more : 0);
+      const std::unique_ptr<ForceTerm> term = p.interaction.terms.at(0)->copy();
+      return term->advance(0, s).events;
+    };
+    EXPECT_EQ(breaks(0.0499, 0), 0) << length;
+    EXPECT_EQ(breaks(0.0501, 0), 20) << length;
+    // 0.02 of a diameter more: reached where the rest is strained by 0.03, or by 0.04 in elements of two diameters.
+    const double others = length > 1.5 * own ? 0.04 : 0.03;
+    EXPECT_EQ(breaks(others - 0.001, 0.02 * own), 0) << length;
+    EXPECT_GT(breaks(others + 0.001, 0.02 * own), 0) << length;
+  }
+}
+
 TEST(Failure, BadOnesAreRefused) {
   const auto message = [](const std::string& failure, const std::string& more = "") -> std::string {
     try {
@@ -253,6 +309,18 @@ TEST(Failure, BadOnesAreRefused) {
   };
   EXPECT_THAT(message("[failure]\n"), HasSubstr("strain: is missing"));
   EXPECT_THAT(message("[failure]\nstrain = 0\n"), HasSubstr("strain"));
+  EXPECT_THAT(
+      message("[failure]\nstrain = 0.3\n"),
+      HasSubstr("failure.toml:13: failure.strain: is 0.3, and the bonds of cnt-10-10-tersoff follow its atoms "
+                "up to 0.255"));
+  EXPECT_THAT(message("[failure]\nstrain = 0.16\n", "[bond]\nlaw = \"harmonic\"\n"),
+              HasSubstr("up to 0.0686; leave [bond] law out, or take at most 0.0686"));
+  EXPECT_THAT(message("[failure]\nfrom = \"atoms\"\n", "[bond]\nlaw = \"harmonic\"\n"),
+              HasSubstr("is \"atoms\", and the bonds are harmonic"));
+  EXPECT_THAT(message("[failure]\nfrom = \"atoms\"\nstrain = 0.1\n"), HasSubstr("stands beside from"));
+  EXPECT_THAT(message("[failure]\nmoment_nN_nm = 15\nstrain_deviation = 0.01\n"), HasSubstr("without strain"));
+  EXPECT_EQ(message("[failure]\nfrom = \"atoms\"\n"), "none");
+  EXPECT_EQ(message("[failure]\nmoment_nN_nm = 15\n"), "none");
   EXPECT_THAT(message("[failure]\nstrain = 0.05\nstrain_deviation = 0.05\n"), HasSubstr("take at most 0.017"));
   EXPECT_THAT(log_header(), HasSubstr(",failure_lost_eV,bonds_broken"));
   EXPECT_THAT(log_header(), ::testing::Not(HasSubstr("failure_eV")));

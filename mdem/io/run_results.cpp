@@ -1,0 +1,215 @@
+#include "io/run_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ropewalk {
+namespace {
+
+constexpr double still_there = 0.95;   // of the largest value
+constexpr double twisted_from = 0.01;  // nN nm
+constexpr double drawn_from = 1e-6;    // strain
+constexpr double stored_from = 1e-3;   // MJ/kg
+constexpr double turned_from = 1;      // degrees
+
+double largest(const std::vector<LogRow>& log, std::size_t rows,
+               const std::function<double(const LogRow&)>& value) {
+  double most = RunResults::none;
+  for (std::size_t k = 0; k < rows; ++k)
+    if (const double v = std::fabs(value(log[k])); std::isfinite(v) && !(v <= most)) most = v;
+  return most;
+}
+double largest(const std::vector<LogRow>& log, const char* column) {
+  return largest(log, log.size(), [column](const LogRow& r) { return r[column]; });
+}
+
+void add_torque(const std::vector<LogRow>& log, std::size_t within, RunResults& r) {
+  const auto torque = torque_of(log);
+  const double most = largest(log, log.size(), torque);
+  if (!(most > twisted_from)) return;
+  r.torque_max = most;
+  r.torque_within = largest(log, within, torque);
+  const auto at =
+      std::find_if(log.begin(), log.end(), [&](const LogRow& row) { return std::fabs(torque(row)) == most; });
+  r.torque_max_ps = (*at)["time_ps"];
+  r.torque_max_deg = (*at)["rotation_deg"];
+  r.torque_fell = std::fabs(torque(log.back())) < still_there * most;
+}
+
+void add_strength(const std::vector<LogRow>& log, RunResults& r) {
+  const LogRow* most = strongest_row(log);
+  if (!most || !(largest(log, "ends_strain") > drawn_from)) return;
+  r.strength = (*most)["stress_GPa"];
+  r.strength_N_per_tex = (*most)["specific_stress_N_per_tex"];
+  r.strength_strain = (*most)["ends_strain"];
+  r.stress_fell = log.back()["stress_GPa"] < still_there * r.strength;
+}
+
+struct ResultColumn {
+  OutputColumn column;
+  double (*value)(const RunResults&);
+};
+const ResultColumn all_results[] = {
+    {{"torque_max_nN_nm", "nN nm",
+      "largest torque about z that twists the rope, mean over both ends and over the time between two rows"},
+     [](const RunResults& r) { return r.torque_max; }},
+    {{"torque_max_at_deg", "deg", "rotation of the upper end at that torque"},
+     [](const RunResults& r) { return r.torque_max_deg; }},
+    {{"torque_within_nN_nm", "nN nm", "the largest before a limit of the model was passed"},
+     [](const RunResults& r) { return r.torque_within; }},
+    {{"first_break_ps", "ps", "when the first tube broke"}, [](const RunResults& r) { return r.first_break_ps; }},
+    {{"first_break_deg", "deg", "rotation of the upper end when the first tube broke"},
+     [](const RunResults& r) { return r.first_break_deg; }},
+    {{"tubes_broken", "", "tubes that have broken"},
+     [](const RunResults& r) { return static_cast<double>(r.tubes_broken); }},
+    {{"strength_GPa", "GPa", "largest stress, of a rope whose ends move apart"},
+     [](const RunResults& r) { return r.strength; }},
+    {{"strength_strain", "", "strain of the ends at that stress"},
+     [](const RunResults& r) { return r.strength_strain; }},
+    {{"stored_at_limit_MJ_per_kg", "MJ/kg",
+      "stored energy over mass in the last row before a limit was passed; without one, the largest"},
+     [](const RunResults& r) { return r.stored_at_limit; }},
+};
+
+std::string at_words(double deg, double ps) {
+  return std::fabs(deg) >= turned_from ? fmt::format("at {:.4g}°", deg) : fmt::format("at {:.4g} ps", ps);
+}
+
+std::string torque_sentence(const RunResults& r) {
+  std::string text =
+      fmt::format("Torque {} {:.4g} nN nm{} {}", r.torque_fell ? "passed its maximum," : "rose to", r.torque_max,
+                  r.torque_fell ? "," : "", at_words(r.torque_max_deg, r.torque_max_ps));
+  if (r.first_limit.empty() || r.torque_max_ps < r.first_limit_ps) return text + ".";
+  text += fmt::format(", beyond {} from {:.4g} ps on", r.first_limit, r.first_limit_ps);
+  if (std::isfinite(r.torque_within)) text += fmt::format("; before, it reached {:.4g} nN nm", r.torque_within);
+  return text + ".";
+}
+
+std::string break_sentence(const RunResults& r) {
+  const TubeBreak& first = r.first_break;
+  std::string text =
+      r.tubes_broken == 1 ? "One tube broke" : fmt::format("{} tubes broke, the first", r.tubes_broken);
+  text += fmt::format(" {}{}: tube {}, element {}{}", r.tubes_broken == 1 ? "" : "",
+                      at_words(r.first_break_deg, r.first_break_ps), first.tube, first.element,
+                      first.held_by.empty() ? "" : ", at " + first.held_by);
+  if (!r.first_limit.empty() && r.first_break_ps >= r.first_limit_ps)
+    text += fmt::format(", beyond {}", r.first_limit);
+  return text + ".";
+}
+
+std::string strength_sentence(const RunResults& r) {
+  return fmt::format("Stress {} {:.3g} GPa ({:.3g} N/tex){} at a strain of {:.3g}.",
+                     r.stress_fell ? "passed its maximum," : "rose to", r.strength, r.strength_N_per_tex,
+                     r.stress_fell ? "," : "", r.strength_strain);
+}
+
+}  // namespace
+
+std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits) {
+  const LimitRecord* first = first_limit(limits);
+  if (!first) return log.size();
+  const bool by_time = first->passed_at_ps > 0;
+  const double since = by_time ? first->passed_at_ps * (1 - 1e-12) : static_cast<double>(first->passed_at_step);
+  const auto beyond = [&](const LogRow& row) { return row[by_time ? "time_ps" : "step"] >= since; };
+  return static_cast<std::size_t>(std::find_if(log.begin(), log.end(), beyond) - log.begin());
+}
+
+std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log) {
+  const char *upper = "torque_upper_nN_nm", *lower = "torque_lower_nN_nm";
+  const double most_upper = largest(log, upper), most_lower = largest(log, lower);
+  const double least = std::fmin(most_upper, most_lower), most = std::fmax(most_upper, most_lower);
+  if (!(least >= 1e-3 * most)) {
+    const char* held = most_lower == most ? lower : upper;
+    return [held](const LogRow& r) { return r[held]; };
+  }
+  return [=](const LogRow& r) { return 0.5 * (r[upper] + r[lower]); };
+}
+
+double rotation_at(const std::vector<LogRow>& log, double time) {
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    if (log[k]["time_ps"] < time) continue;
+    const double to = log[k]["rotation_deg"];
+    if (k == 0) return to;
+    const double begin = log[k - 1]["time_ps"], from = log[k - 1]["rotation_deg"];
+    if (!(begin < time)) return to;
+    return from + (to - from) * (time - begin) / (log[k]["time_ps"] - begin);
+  }
+  return log.empty() ? RunResults::none : log.back()["rotation_deg"];
+}
+
+RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits,
+                       const std::vector<TubeBreak>& breaks) {
+  RunResults r;
+  if (const LimitRecord* first = first_limit(limits)) {
+    r.first_limit = first->key;
+    r.first_limit_ps = first->passed_at_ps;
+  }
+  const std::size_t within = rows_within(log, limits);
+  add_torque(log, within, r);
+  add_strength(log, r);
+  if (!breaks.empty()) {
+    r.first_break = *std::min_element(breaks.begin(), breaks.end(),
+                                      [](const TubeBreak& a, const TubeBreak& b) { return a.time_ps < b.time_ps; });
+    r.first_break_ps = r.first_break.time_ps;
+    r.first_break_deg = rotation_at(log, r.first_break_ps);
+    std::vector<int> tubes;
+    for (const TubeBreak& b : breaks) tubes.push_back(b.tube);
+    std::sort(tubes.begin(), tubes.end());
+    r.tubes_broken = static_cast<int>(std::unique(tubes.begin(), tubes.end()) - tubes.begin());
+  }
+  const auto stored = [](const LogRow& row) { return row["stored_MJ_per_kg"]; };
+  if (within == log.size())
+    r.stored_at_limit = largest(log, within, stored);
+  else if (within > 0)
+    r.stored_at_limit = stored(log[within - 1]);
+  if (!log.empty()) {
+    r.links_formed = log.back()["links_formed"];
+    r.links_broken = log.back()["links_broken"];
+    r.bonds_broken = log.back()["bonds_broken"];
+  }
+  return r;
+}
+
+std::vector<OutputColumn> limit_columns() {
+  return {{"first_limit", "", "key of the limit that was passed first; empty: none was"},
+          {"first_limit_ps", "ps", "when it was passed: what comes after is beyond the model"}};
+}
+std::string limit_cells(const std::vector<LimitRecord>& limits) {
+  const LimitRecord* first = first_limit(limits);
+  return first ? fmt::format("{},{}", first->key, first->passed_at_ps) : ",nan";
+}
+
+std::vector<OutputColumn> result_columns() {
+  std::vector<OutputColumn> out;
+  for (const ResultColumn& c : all_results) out.push_back(c.column);
+  return out;
+}
+std::vector<double> result_values(const RunResults& results) {
+  std::vector<double> out;
+  for (const ResultColumn& c : all_results) out.push_back(c.value(results));
+  return out;
+}
+std::string result_cells(const RunResults& results) {
+  std::string text;
+  for (const double v : result_values(results))
+    text += (text.empty() ? "" : ",") + (std::isfinite(v) ? fmt::format("{}", v) : std::string("nan"));
+  return text;
+}
+
+std::vector<std::string> result_sentences(const RunResults& r) {
+  std::vector<std::string> out;
+  if (std::isfinite(r.torque_max)) out.push_back(torque_sentence(r));
+  if (r.tubes_broken > 0) out.push_back(break_sentence(r));
+  if (std::isfinite(r.strength)) out.push_back(strength_sentence(r));
+  if (r.links_broken > 0)
+    out.push_back(fmt::format("{:.0f} of {:.0f} links broke.", r.links_broken, r.links_formed));
+  if (r.stored_at_limit > stored_from)
+    out.push_back(r.first_limit.empty() ? fmt::format("The rope stored up to {:.3g} MJ/kg.", r.stored_at_limit)
+                                        : fmt::format("When {} was passed, the rope stored {:.3g} MJ/kg.",
+                                                      r.first_limit, r.stored_at_limit));
+  return out;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,64 @@
+// What came of a run, in numbers that the prompt, the report and all tables share.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "io/limits_file.hpp"
+#include "io/log.hpp"
+#include "io/outputs.hpp"
+
+namespace ropewalk {
+
+// Rows of the log before the first limit was passed; all where none was.
+std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits);
+
+// nN nm: the torque about z that twists a rope, the mean over both ends where both are held, else that of the held
+// end.
+std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log);
+
+// Degrees: the rotation of the upper end at this time, ps, between two rows; NaN where there are none.
+double rotation_at(const std::vector<LogRow>& log, double time);
+
+struct TubeBreak {
+  double time_ps = 0;
+  int tube = 0, element = 0;  // from 0; the element before the break, counted in the tube
+  std::string held_by = {};   // as LimitRecord::passed_held_by
+};
+
+struct RunResults {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+  std::string first_limit;  // key of the limit that was passed first; empty: none was
+  double first_limit_ps = none;
+  double torque_max = none;                              // nN nm: the largest absolute torque_of() of a row
+  double torque_max_deg = none, torque_max_ps = none;    // rotation and time of that row
+  bool torque_fell = false;                              // below 95 % of it by the end
+  double torque_within = none;                           // nN nm: the same of the rows before the first limit
+  double first_break_deg = none, first_break_ps = none;  // of the tubes
+  TubeBreak first_break;
+  int tubes_broken = 0;
+  double strength = none, strength_N_per_tex = none,
+         strength_strain = none;  // GPa: largest stress; where ends are drawn apart
+  bool stress_fell = false;
+  double stored_at_limit = none;  // MJ/kg: of the last row before the first limit; without one, the largest
+  double links_formed = 0, links_broken = 0, bonds_broken = 0;  // in the last row
+};
+
+RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits,
+                       const std::vector<TubeBreak>& breaks);
+
+// Columns for tables of runs, and their cells, without a comma at either end.
+std::vector<OutputColumn> limit_columns();
+std::string limit_cells(const std::vector<LimitRecord>& limits);
+std::vector<OutputColumn> result_columns();
+std::string result_cells(const RunResults& results);
+// The same by name; NaN: the run has no such value.
+std::vector<double> result_values(const RunResults& results);
+
+// A sentence each: torque and first break, strength, stored energy.
+std::vector<std::string> result_sentences(const RunResults& results);
+
+}  // namespace ropewalk

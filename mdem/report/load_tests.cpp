@@ -1,0 +1,155 @@
+#include "report/load_tests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/units.hpp"
+#include "report/log_figures.hpp"
+#include "report/scatter.hpp"
+
+namespace ropewalk {
+namespace {
+
+struct Mean {
+  double value = NAN, error = NAN;
+};
+
+template <class Value>
+Mean mean_of(const std::vector<LoadTest>& tests, Value value) {
+  double sum = 0, squares = 0;
+  int n = 0;
+  for (const LoadTest& t : tests)
+    if (std::isfinite(value(t))) sum += value(t), ++n;
+  if (n == 0) return {};
+  const double mean = sum / n;
+  for (const LoadTest& t : tests)
+    if (std::isfinite(value(t))) squares += std::pow(value(t) - mean, 2);
+  return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : NAN};
+}
+
+int followed(const LoadTestGroup& group) {
+  return static_cast<int>(
+      std::count_if(group.tests.begin(), group.tests.end(), [](const LoadTest& t) { return t.to_half; }));
+}
+
+Mean mean_at(const LoadTestGroup& group, const std::string& x) {
+  return mean_of(group.tests, [&](const LoadTest& t) { return t.at[x]; });
+}
+
+// Of the replicate that passed a limit first.
+std::vector<LimitRecord> earliest_limits(const LoadTestGroup& group) {
+  std::vector<LimitRecord> all;
+  for (const LoadTest& t : group.tests) all.insert(all.end(), t.limits.begin(), t.limits.end());
+  return all;
+}
+
+std::string title_of(const LoadTestKind& kind, const std::string& x) {
+  std::string title = std::string(kind.drawn) + " against " + column_axis(x).quantity;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
+// The line of the first column over x, and, by the law of yarns, cos^2 of the angle from the first point on.
+ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups, const std::string& x) {
+  ScatterChart scatter;
+  LineChart& chart = scatter.chart;
+  chart.title = title_of(kind, x);
+  chart.x = column_axis(x);
+  chart.y = {kind.drawn, kind.unit, false};
+  chart.y.from_zero = true;
+  chart.height = 360;
+  for (const LoadTestGroup& g : groups) {
+    auto line =
+        std::find_if(chart.lines.begin(), chart.lines.end(), [&](const ChartLine& l) { return l.name == g.line; });
+    if (line == chart.lines.end()) {
+      chart.lines.push_back({g.line, {}, {}, static_cast<int>(chart.lines.size()) % categorical_colours});
+      line = chart.lines.end() - 1;
+      line->bars = true;
+    }
+    const Mean at = mean_at(g, x), drawn = mean_of(g.tests, [](const LoadTest&t) { return t.values.front(); });
+    line->x.push_back(at.value);
+    line->y.push_back(drawn.value);
+    line->error.push_back(drawn.error);
+  }
+  const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1; };
+  if (std::any_of(groups.begin(), groups.end(), one_seed))
+    chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
+  if (x != "beta_deg" || !kind.yarn_law) return scatter;
+  const std::vector<ChartLine> measured = chart.lines;
+  for (const ChartLine& line : measured) {
+    if (line.x.size() < 2) continue;
+    ChartLine law{&line == &measured.front() ? "cos²" : "", {}, {}, line.colour, true};
+    const double straight = line.y.front() / std::pow(std::cos(line.x.front() * units::degree), 2);
+    const double most = *std::max_element(line.x.begin(), line.x.end());
+    for (int k = 0; k <= 40; ++k) {
+      law.x.push_back(line.x.front() + k * (most - line.x.front()) / 40);
+      law.y.push_back(straight * std::pow(std::cos(law.x.back() * units::degree), 2));
+    }
+    chart.lines.push_back(law);
+  }
+  return scatter;
+}
+
+}  // namespace
+
+std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                           const std::string& x) {
+  std::string text = "run,replicates,to_half," + x;
+  for (const OutputColumn& c : kind.columns) text += fmt::format(",{0},{0}_standard_error", c.name);
+  text += "," + column_names(limit_columns()) + "\n";
+  for (const LoadTestGroup& g : groups) {
+    text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), mean_at(g, x).value);
+    for (std::size_t k = 0; k < kind.columns.size(); ++k) {
+      const Mean m = mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; });
+      text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
+    }
+    text += "," + limit_cells(earliest_limits(g)) + "\n";
+  }
+  return text;
+}
+
+std::string load_tests_svg(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                           const std::string& x) {
+  return chart_file(chart_of(kind, groups, x));
+}
+
+std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                            const std::string& x, const std::string& lines, Figures& figures) {
+  std::string html =
+      heading(kind.heading) + paragraph(kind.words) +
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
+      escape_markup(column_axis(x).quantity) + "</th>";
+  std::vector<OutputColumn> columns = limit_columns();
+  columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
+  for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
+  html += "</tr></thead><tbody>\n";
+  for (const LoadTestGroup& g : groups) {
+    const auto cell = [&](const Mean& m) {
+      html += "<td>" + (std::isfinite(m.error) ? measured_text(m.value, m.error) : number_text(m.value)) + "</td>";
+    };
+    html += fmt::format("<tr><th>{}</th><td>{} of {}</td>", escape_markup(g.name), followed(g), g.tests.size());
+    cell(mean_at(g, x));
+    const std::vector<LimitRecord> limits = earliest_limits(g);
+    const LimitRecord* first = first_limit(limits);
+    html += first
+                ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
+                : "<td>–</td><td>–</td>";
+    for (std::size_t k = 0; k < kind.columns.size(); ++k)
+      cell(mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; }));
+    html += "</tr>\n";
+  }
+  html += "</tbody></table></div>\n";
+  const std::string svg = scatter_svg(chart_of(kind, groups, x));
+  if (svg.empty()) return html;
+  std::string caption =
+      title_of(kind, x) + ". Bars: one standard error to either side, over runs that differ in their seed.";
+  if (!lines.empty()) caption += " Lines: " + escape_markup(lines) + ".";
+  if (x == "beta_deg" && kind.yarn_law)
+    caption += " Dashed: the law of yarns of long fibres, cos² of the angle of the outermost tubes.";
+  return html + "<figure><h3>" + escape_markup(title_of(kind, x)) + "</h3>\n" + svg + figures.caption(caption) +
+         "</figure>\n";
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,51 @@
+// Ropes that were loaded until they failed: tables and figures with means and errors over runs that differ in their
+// seed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
+#include "io/run_results.hpp"
+#include "report/page.hpp"
+
+namespace ropewalk {
+
+// One run.
+struct LoadTest {
+  LogRow at;                   // the row that the column of the horizontal axis is taken from
+  std::vector<double> values;  // those of LoadTestKind::columns
+  bool to_half = false;        // the run went on until the load had fallen to half of the largest
+  std::vector<LimitRecord> limits = {};
+};
+
+// Runs that differ in their seed alone.
+struct LoadTestGroup {
+  std::string name;
+  std::string line;  // groups with the same text are points of one line
+  std::vector<LoadTest> tests;
+};
+
+struct LoadTestKind {
+  const char* heading;
+  const char* words;                  // HTML above the table
+  const char* drawn;                  // what the first column is, in a figure
+  const char* unit;                   // of the first column
+  std::vector<OutputColumn> columns;  // the first is drawn
+  bool yarn_law = false;              // over beta_deg with cos^2 of that angle
+};
+
+// Columns: run, replicates, to_half, --x, then each of the kind with its standard error, then limit_columns() of
+// the replicate that passed a limit first.
+std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                           const std::string& x);
+// The first column over the column `x` of the log, from 0. With `yarn_law` over beta_deg with the cos^2 of that
+// angle, which is the law of yarns of long fibres (J. W. S. Hearle, P. Grosberg, S. Backer, Structural Mechanics of
+// Fibers, Yarns, and Fabrics, Wiley 1969). Empty: no line has two points.
+std::string load_tests_svg(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                           const std::string& x);
+// The part of a page: the table and that chart. `lines`: what the names of the lines are, "tube_length_nm, per_nm".
+std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
+                            const std::string& x, const std::string& lines, Figures& figures);
+
+}  // namespace ropewalk

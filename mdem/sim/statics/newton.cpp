@@ -1,0 +1,340 @@
+#include "sim/statics/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "model/contract.hpp"
+#include "model/counter_random.hpp"
+#include "model/error.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr int most_products = 400;         // of one solution
+constexpr int most_tries = 25;             // of one step
+constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
+constexpr double nearly_free = 0.1;        // 1/ps: with a smaller shift only soft motions are held back
+constexpr double fire_until = 0.05;        // eV/nm: smaller forces are those of contacts that have formed
+constexpr long fire_steps = 300;           // after which Newton's method has a turn
+
+VectorXd forces_of(const Simulation& s) {
+  VectorXd f(6 * static_cast<Eigen::Index>(s.state().size()));
+  for (std::size_t i = 0; i < s.state().size(); ++i)
+    f.segment<6>(6 * static_cast<Eigen::Index>(i)) << s.forces().force[i], s.forces().torque[i];
+  return f;
+}
+
+double energy_of(const Simulation& s) { return s.forces().energy.potential() - s.account().work; }
+
+}  // namespace
+
+struct NewtonStatics::At {
+  AllowedMotions allowed;
+  VectorXd force, borne;  // that moves elements; that constraints bear
+  double energy = 0;      // eV, potential less the work of the loads
+  const BlockMatrix* k = nullptr;
+
+  explicit At(const Simulation& s) : allowed(s), force(forces_of(s)), energy(energy_of(s)) {
+    borne = force;
+    allowed.project_force(force);
+    borne -= force;
+  }
+};
+
+NewtonStatics::NewtonStatics(Simulation& simulation, const NewtonOptions& options)
+    : s_(simulation),
+      options_(options),
+      maker_(simulation),
+      sections_(sections_of(simulation.topology(), simulation.state())) {}
+
+NewtonStatics::Refusal NewtonStatics::refusal(const Simulation& s) {
+  if (const std::string term = term_without_tangent(s); !term.empty())
+    return {"does not go with " + term + ", whose forces have no tangent",
+            "take " + term + " away, or take solver = \"fire\" or mode = \"dynamics\""};
+  const AllowedMotions allowed(s);
+  if (!allowed.keeps_momentum())
+    return {"needs constraints that act on different elements",
+            "hold each element by one [[grip]] or [[load]] alone"};
+  const std::string motion = allowed.mechanism(load_forces(s.loads(), s.state()));
+  if (motion.empty()) return {};
+  return {"finds no state of rest: the load " + motion + ", and nothing holds it",
+          "hold it, as by [[load]] of kind \"fix\" or [[grip]], or balance the load"};
+}
+
+// The largest of what is free.
+void NewtonStatics::look(At& at) {
+  out_.spinning = at.allowed.largest_spin(forces_of(s_));
+  out_.largest_force = out_.largest_torque = out_.relaxed.force = 0;
+  for (int t = 0; t < s_.topology().tubes(); ++t)
+    for (int e = s_.topology().tube_begin[t]; e < s_.topology().tube_begin[t + 1]; ++e) {
+      const auto row = 6 * static_cast<Eigen::Index>(e);
+      const double force = at.force.segment<3>(row).norm(), torque = at.force.segment<3>(row + 3).norm();
+      out_.largest_force = std::max(out_.largest_force, force);
+      out_.largest_torque = std::max(out_.largest_torque, torque);
+      out_.relaxed.force = std::max({out_.relaxed.force, force, torque / s_.topology().type_of(t).radius});
+    }
+}
+
+Solution NewtonStatics::solve(const At& at, double shift, const VectorXd& b, double tolerance, VectorXd& x) {
+  const AllowedMotions& allowed = at.allowed;
+  const VectorXd& mass = allowed.mass();
+  const Preconditioner chain(s_.topology(), s_.state(), sections_, *at.k, mass, shift, allowed.held());
+  const Operator a = [&](const VectorXd& v, VectorXd& y) {
+    at.k->multiply(v, y);
+    y.noalias() += shift * mass.cwiseProduct(v);
+    allowed.add_constraint_stiffness(at.borne, v, y);
+    allowed.project_force(y);
+  };
+  const Precondition m = [&](const VectorXd& r, VectorXd& z) {
+    chain.solve(r, z);
+    allowed.project_motion(z);
+  };
+  const Solution found = out_.symmetric ? conjugate_gradients(a, m, b, tolerance, most_products, x)
+                                        : bicgstab(a, m, b, tolerance, most_products, x);
+  out_.products += found.iterations;
+  return found;
+}
+
+// A tube that touches no other one may go far, as long as it does not turn much: what turns by t along straight
+// lines becomes longer by t^2/2.
+double NewtonStatics::farthest(const VectorXd& d) const {
+  constexpr double of_turns = 3;
+  const bool alone = !s_.interaction().law || s_.topology().tubes() == 1;
+  double most = 0;
+  for (int t = 0; t < s_.topology().tubes(); ++t)
+    for (int e = s_.topology().tube_begin[t]; e < s_.topology().tube_begin[t + 1]; ++e) {
+      const auto row = 6 * static_cast<Eigen::Index>(e);
+      const double turn = s_.topology().type_of(t).radius * d.segment<3>(row + 3).norm();
+      most = std::max(most, alone ? of_turns * turn : std::max(turn, d.segment<3>(row).norm()));
+    }
+  return most;
+}
+
+// A section of a rope that turns about its axis goes along the arc and not along its tangent, which would make it
+// wider.
+VectorXd NewtonStatics::on_arcs(const VectorXd& d) const {
+  if (sections_.count == 0) return d;
+  const auto count = static_cast<std::size_t>(sections_.count);
+  const State& s = s_.state();
+  struct Section {
+    Vector3 centre = Vector3::Zero(), axis = Vector3::Zero(), shift = Vector3::Zero();
+    double elements = 0, moment = 0, arms = 0;
+  };
+  std::vector<Section> all(count);
+  const auto row = [](std::size_t i) { return 6 * static_cast<Eigen::Index>(i); };
+  const auto of = [&](std::size_t i) -> Section& { return all[static_cast<std::size_t>(sections_.of[i])]; };
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    Section& section = of(i);
+    section.centre += s.position[i];
+    section.shift += d.segment<3>(row(i));
+    section.axis += axis_of(s.orientation[i]);
+    section.elements += 1;
+  }
+  for (Section& section : all) {
+    section.centre /= section.elements;
+    section.shift /= section.elements;
+    section.axis.normalize();
+  }
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    Section& section = of(i);
+    const Vector3 turn = section.axis.cross(Vector3(s.position[i] - section.centre));
+    section.moment += turn.dot(Vector3(d.segment<3>(row(i))) - section.shift);
+    section.arms += turn.squaredNorm();
+  }
+  VectorXd out = d;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const Section& section = of(i);
+    if (!(section.arms > 0)) continue;
+    const double angle = section.moment / section.arms;
+    const Vector3 arm = s.position[i] - section.centre;
+    const Vector3 rest = Vector3(d.segment<3>(row(i))) - section.shift - angle * section.axis.cross(arm);
+    out.segment<3>(row(i)) = section.shift + Eigen::AngleAxisd(angle, section.axis) * arm - arm +
+                             Eigen::AngleAxisd(0.5 * angle, section.axis) * rest;
+  }
+  return out;
+}
+
+bool NewtonStatics::move(const VectorXd& d) {
+  const VectorXd along = on_arcs(d);
+  Vec3Array linear(s_.state().size()), angular(s_.state().size());
+  for (std::size_t i = 0; i < s_.state().size(); ++i) {
+    const auto row = 6 * static_cast<Eigen::Index>(i);
+    linear.set(i, along.segment<3>(row));
+    angular.set(i, along.segment<3>(row + 3));
+  }
+  s_.displace(linear, angular);
+  return std::isfinite(s_.forces().energy.potential()) && s_.forces().slipping_bond < 0;
+}
+
+// Conjugate gradients for (K + s M) x = r, r random with unit variance in every motion, meet a motion whose
+// stiffness is below -s if there is one.
+std::optional<VectorXd> NewtonStatics::falling_motion(const At& at) {
+  const AllowedMotions& allowed = at.allowed;
+  VectorXd r(allowed.mass().size()), x;
+  for (Eigen::Index k = 0; k < r.size(); k += 2) {
+    const auto bits = philox({static_cast<std::uint32_t>(k), 7, 0, 0}, 1);
+    const auto pair = normal_pair(bits[0], bits[1]);
+    r[k] = pair[0];
+    r[k + 1] = pair[1];
+  }
+  r = r.cwiseProduct(allowed.mass().cwiseSqrt()).eval();
+  allowed.project_force(r);
+  const Solution found = solve(at, options_.slow * options_.slow, r, 1e-3, x);
+  if (found.falls) return found.motion;
+  return std::nullopt;
+}
+
+// To the side where the energy falls farther.
+bool NewtonStatics::push_along(const VectorXd& motion) {
+  const VectorXd d = motion * (0.1 * s_.topology().largest_radius() / farthest(motion));
+  const Simulation before = s_;
+  std::optional<Simulation> best;
+  for (const double sign : {1.0, -1.0}) {
+    s_ = before;
+    if (move(sign * d) && (!best || energy_of(s_) < energy_of(*best))) best = s_;
+  }
+  s_ = best ? *best : before;
+  return best.has_value();
+}
+
+std::string overloaded_bond(const Simulation& s) {
+  constexpr double nearly_slipping = 80 * units::degree;
+  const Topology& topology = s.topology();
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    const Anharmonic& h = type.bond.anharmonic;
+    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      const Frame a = frame_of(s.state().orientation[i]), b = frame_of(s.state().orientation[i + 1]);
+      const double twist = std::fabs(bond_twist_angle(a, b)), bend = std::acos(std::min(1.0, a.t.dot(b.t)));
+      const double per_length = h.radius / type.element_length;
+      const char* what = h.used && per_length * twist >= h.max_shear ? "has collapsed"
+                         : h.used && per_length * bend >= h.max_bend ? "has kinked"
+                         : twist > nearly_slipping ? "has a bond that slips at a twist of 90 degrees"
+                                                   : nullptr;
+      if (what)
+        return "tube " + std::to_string(t) + " " + what + " at element " +
+               std::to_string(e - topology.tube_begin[t]) + ": the load is more than it bears";
+    }
+  }
+  return "";
+}
+
+Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
+  ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
+  constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
+  NewtonPace* pace = &s_.relaxation_with(goal);
+  out_ = {};
+  const bool rested = s_.last_rest().step == s_.step_count();
+  if (pace->rate == 0) {
+    pace->newton = rested || !options_.fire;
+    pace->rate = rested ? options_.least_rate : options_.first_rate;
+  }
+  const auto done = [&] { return static_cast<long>(s_.step_count() - (s_.relaxation_began())); };
+  const auto end_by = [&](Statics::End why) {
+    out_.end = why;
+    if (why != Statics::End::interrupted) s_.rest_after(out_.relaxed);
+    return out_;
+  };
+  for (;;) {
+    at_newton_ = pace->newton;
+    if (!pace->newton) {
+      const long until = std::min(max_steps, (done() / fire_steps + 1) * fire_steps);
+      if (!s_.relax_by_fire(std::max(fire_until, goal.force), until, progress))
+        return end_by(Statics::End::interrupted);
+      pace = &s_.relaxation_with(goal);
+      pace->newton = true;
+      pace->rate = options_.first_rate;
+      at_newton_ = true;
+    }
+    At at(s_);
+    look(at);
+    const BlockMatrix& k = maker_.make(s_);
+    at.k = &k;
+    out_.symmetric = k.symmetric();
+    const double bonds =
+        std::max({s_.forces().energy.bonds(), least_part * std::fabs(s_.forces().energy.vdw), 1e-6});
+    const double enough = 0.25 * goal.energy * goal.energy * bonds;
+    bool moved_on = false;
+    for (int tries = 0; tries < most_tries && !moved_on; ++tries) {
+      VectorXd d;
+      const double shift = pace->rate * pace->rate;
+      const double tolerance = std::min(0.1, std::max(1e-3, 0.03 * std::sqrt(out_.relaxed.force)));
+      const Solution found = solve(at, shift, at.force, tolerance, d);
+      if (found.falls) {
+        pace->falling = std::max(pace->falling, pace->rate);
+        pace->rate = std::max(1.5 * pace->rate, 0.01);
+        continue;
+      }
+      const double gain = at.force.dot(d);
+      out_.relaxed.above = 0.5 * gain;
+      out_.relaxed.error = 2 * std::sqrt(std::max(0.0, out_.relaxed.above) / bonds);
+      const bool free = pace->rate <= 3.1 * options_.least_rate ||
+                        (pace->rate < nearly_free && out_.relaxed.above < 0.01 * enough);
+      if (out_.relaxed.force < goal.force && out_.relaxed.above <= enough && free) {
+        out_.relaxed.at_rest = true;
+        if (rested && s_.last_rest().step == s_.step_count()) {
+          out_.relaxed.saddles = s_.last_rest().saddles;
+          return end_by(Statics::End::at_rest);
+        }
+        out_.relaxed.saddles = pace->saddles;
+        // Under loads without a potential the symmetric part does not tell what grows.
+        const std::optional<VectorXd> motion = out_.symmetric ? falling_motion(at) : std::nullopt;
+        if (!motion) return end_by(Statics::End::at_rest);
+        const bool came_back = pace->saddles > 0 && !(at.energy < pace->saddle_energy - enough);
+        if (came_back) --out_.relaxed.saddles;
+        if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(*motion)) {
+          out_.falls = true;
+          return end_by(Statics::End::at_rest);
+        }
+        pace = &s_.relaxation_with(goal);
+        ++pace->saddles;
+        pace->saddle_energy = at.energy;
+        pace->rate = 1;
+        pace->falling = 0;
+        out_.relaxed.at_rest = false;
+        moved_on = true;
+        break;
+      }
+      if (done() >= max_steps || out_.newton_steps >= options_.most) return end_by(Statics::End::out_of_steps);
+      if (tries == 0 && !progress(done())) return end_by(Statics::End::interrupted);
+      const double far = farthest(d), scale = far > options_.farthest ? options_.farthest / far : 1.0;
+      const Simulation before = s_;
+      const bool fine = move(scale * d);
+      const double change = energy_of(s_) - at.energy, noise = 1e-10 * std::fabs(at.energy);
+      VectorXd left = forces_of(s_);
+      AllowedMotions(s_).project_force(left);
+      const double end = scale * left.dot(d), first = scale * gain;
+      if (!fine || !(change < -1e-4 * first + noise) || !(end > -1.5 * std::fabs(first) - 1e-9)) {
+        ++out_.refused;
+        s_ = before;
+        pace = &s_.relaxation_with(goal);
+        pace->rate = std::max(2 * pace->rate, 0.02);
+        continue;
+      }
+      moved_on = true;
+      ++out_.newton_steps;
+      pace = &s_.relaxation_with(goal);
+      // The force that the model leaves along the step, against the one that is there.
+      const double by_model =
+          scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
+      const double disagreement = std::fabs(end - by_model) / std::fabs(first);
+      if (disagreement < 0.3 && scale > 0.3)
+        pace->rate = std::max(options_.least_rate, pace->rate / 3);
+      else if (end - by_model < -0.7 * std::fabs(first))
+        pace->rate *= 2;
+      if (pace->falling > 0 && pace->rate < 1.3 * pace->falling) {
+        pace->rate = 1.3 * pace->falling;
+        pace->falling *= 0.5;
+      }
+    }
+    if (moved_on) continue;
+    if (!options_.fire || done() >= max_steps) return end_by(Statics::End::refused);
+    pace->newton = false;
+  }
+}
+
+}  // namespace ropewalk

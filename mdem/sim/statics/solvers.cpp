@@ -1,0 +1,273 @@
+#include "sim/statics/solvers.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "model/contract.hpp"
+#include "sim/statics/stiffness_loops.hpp"
+
+namespace ropewalk {
+namespace {
+
+using Eigen::VectorXd;
+
+Block symmetric_part(const Block& b) { return 0.5 * (b + b.transpose()); }
+
+// Of a pivot; where it is not positive, of the positive one with the same eigenvalues but for the sign.
+Block inverse_of(const Block& d) {
+  constexpr double least = 1e-3;
+  const Eigen::LLT<Block> factor(d);
+  if (factor.info() == Eigen::Success && factor.matrixL().toDenseMatrix().diagonal().minCoeff() > 1e-9)
+    return factor.solve(Block::Identity());
+  const Eigen::SelfAdjointEigenSolver<Block> e(d);
+  const Eigen::Matrix<double, 6, 1> values = e.eigenvalues().cwiseAbs().cwiseMax(least);
+  return e.eigenvectors() * values.cwiseInverse().asDiagonal() * e.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Sections sections_of(const Topology& topology, const State& state) {
+  Sections out;
+  out.of.resize(state.size());
+  int strand_tube = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    if (topology.begins_strand(t)) strand_tube = t;
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const int section = e - topology.tube_begin[strand_tube];
+      out.of[static_cast<std::size_t>(e)] = section;
+      out.count = std::max(out.count, section + 1);
+    }
+  }
+  // In a rope sections lie farther apart than they are wide.
+  std::vector<Vector3> centre(static_cast<std::size_t>(out.count), Vector3::Zero());
+  std::vector<double> count(centre.size(), 0);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto s = static_cast<std::size_t>(out.of[i]);
+    centre[s] += state.position[i];
+    count[s] += 1;
+  }
+  for (std::size_t s = 0; s < centre.size(); ++s) centre[s] /= count[s];
+  double width2 = 0, length = 0;
+  for (std::size_t i = 0; i < state.size(); ++i)
+    width2 += (state.position[i] - centre[static_cast<std::size_t>(out.of[i])]).squaredNorm();
+  for (std::size_t s = 0; s + 1 < centre.size(); ++s) length += (centre[s + 1] - centre[s]).norm();
+  if (out.count < 3 || std::sqrt(width2 / static_cast<double>(state.size())) > 0.3 * length) out.count = 0;
+  return out;
+}
+
+Preconditioner::Preconditioner(const Topology& topology, const State& state, const Sections& sections,
+                               const BlockMatrix& k, const VectorXd& mass, double shift,
+                               const std::vector<char>& held)
+    : topology_(topology), sections_(sections) {
+  decompose_chains(k, mass, shift, held);
+  if (sections_.count == 0) return;
+  find_section_motions(state, held);
+  decompose_sections(k, mass, shift);
+}
+
+void Preconditioner::decompose_chains(const BlockMatrix& k, const VectorXd& mass, double shift,
+                                      const std::vector<char>& held) {
+  const auto n = static_cast<std::size_t>(k.rows());
+  inverse_.resize(n);
+  lower_.assign(n, Block::Zero());
+  const auto is_held = [&](std::size_t i, int c) { return held[6 * i + static_cast<std::size_t>(c)] != 0; };
+  for (int t = 0; t < topology_.tubes(); ++t)
+    for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      Block d = symmetric_part(k.diagonal[i]);
+      d.diagonal() += shift * mass.segment<6>(6 * static_cast<Eigen::Index>(e));
+      for (int c = 0; c < 6; ++c)
+        if (is_held(i, c)) {
+          d.row(c).setZero();
+          d.col(c).setZero();
+          d(c, c) = 1;
+        }
+      if (e > topology_.tube_begin[t]) {
+        Block above = k.at(e - 1, e);
+        for (int c = 0; c < 6; ++c) {
+          if (is_held(i, c)) above.col(c).setZero();
+          if (is_held(i - 1, c)) above.row(c).setZero();
+        }
+        lower_[i] = above.transpose() * inverse_[i - 1];
+        d -= lower_[i] * above;
+        d = symmetric_part(d);
+      }
+      inverse_[i] = inverse_of(d);
+    }
+}
+
+// Moves along three axes, the turn about the rope's axis, and tilts of all elements in place: tubes slide along one
+// another, so that sections do not stay plane.
+void Preconditioner::find_section_motions(const State& state, const std::vector<char>& held) {
+  const auto count = static_cast<std::size_t>(sections_.count);
+  std::vector<Vector3> centre(count, Vector3::Zero());
+  std::vector<double> elements(count, 0);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto s = static_cast<std::size_t>(sections_.of[i]);
+    centre[s] += state.position[i];
+    elements[s] += 1;
+  }
+  for (std::size_t s = 0; s < count; ++s) centre[s] /= elements[s];
+  std::vector<Eigen::Matrix3d> frame(count);
+  for (std::size_t s = 0; s < count; ++s) {
+    const Vector3 along = (centre[std::min(s + 1, count - 1)] - centre[s > 0 ? s - 1 : 0]).normalized();
+    const Vector3 across = along.unitOrthogonal();
+    frame[s] << across, along.cross(across), along;
+  }
+  motion_.resize(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto s = static_cast<std::size_t>(sections_.of[i]);
+    Block z = Block::Zero();
+    z.topLeftCorner<3, 3>() = z.bottomRightCorner<3, 3>() = frame[s];
+    z.block<3, 1>(0, 5) = frame[s].col(2).cross(Vector3(state.position[i] - centre[s]));
+    for (int c = 0; c < 6; ++c)
+      if (held[6 * i + static_cast<std::size_t>(c)]) z.row(c).setZero();
+    motion_[i] = z;
+  }
+}
+
+void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& mass, double shift) {
+  const auto section = [&](int e) { return sections_.of[static_cast<std::size_t>(e)]; };
+  int reach = 0;
+  for (int i = 0; i < k.rows(); ++i)
+    for (int at = k.begin[static_cast<std::size_t>(i)]; at < k.begin[static_cast<std::size_t>(i) + 1]; ++at)
+      reach = std::max(reach, std::abs(section(i) - section(k.column[static_cast<std::size_t>(at)])));
+  const int n = 6 * sections_.count, width = 6 * (reach + 1);
+  band_ = Eigen::MatrixXd::Zero(width, n);
+  const auto add = [&](int row_section, int column_section, const Block& b) {
+    for (int c = 0; c < 6; ++c)
+      for (int r = 0; r < 6; ++r)
+        if (const int row = 6 * row_section + r, column = 6 * column_section + c; row >= column)
+          band_(row - column, column) += b(r, c);
+  };
+  for (int i = 0; i < k.rows(); ++i) {
+    const auto a = static_cast<std::size_t>(i);
+    Block d = symmetric_part(k.diagonal[a]);
+    d.diagonal() += shift * mass.segment<6>(6 * static_cast<Eigen::Index>(i));
+    const Block z = motion_[a].transpose();
+    add(section(i), section(i), z * (d * motion_[a]));
+    for (int at = k.begin[a]; at < k.begin[a + 1]; ++at) {
+      const int j = k.column[static_cast<std::size_t>(at)];
+      const Block b = z * (k.block[static_cast<std::size_t>(at)] * motion_[static_cast<std::size_t>(j)]);
+      if (section(i) == section(j)) {
+        add(section(i), section(i), b + b.transpose());
+      } else if (section(i) > section(j)) {
+        add(section(i), section(j), b);
+      } else {
+        add(section(j), section(i), b.transpose());
+      }
+    }
+  }
+  const double largest = band_.row(0).maxCoeff();
+  for (int j = 0; j < n; ++j) {
+    double d = band_(0, j);
+    if (!(d > 1e-12 * largest)) d = std::max(std::fabs(d), 1e-6 * largest);
+    const double root = std::sqrt(d);
+    band_(0, j) = root;
+    const int most = std::min(width - 1, n - 1 - j);
+    for (int r = 1; r <= most; ++r) band_(r, j) /= root;
+    for (int c = 1; c <= most; ++c)
+      if (const double v = band_(c, j); v != 0)
+        for (int r = c; r <= most; ++r) band_(r - c, j + c) -= band_(r, j) * v;
+  }
+}
+
+void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {
+  const auto n = static_cast<int>(band_.cols()), width = static_cast<int>(band_.rows());
+  VectorXd b = VectorXd::Zero(n);
+  for (std::size_t i = 0; i < motion_.size(); ++i)
+    b.segment<6>(6 * sections_.of[i]).noalias() +=
+        motion_[i].transpose() * r.segment<6>(6 * static_cast<Eigen::Index>(i));
+  for (int j = 0; j < n; ++j) {
+    b[j] /= band_(0, j);
+    for (int q = 1; q <= std::min(width - 1, n - 1 - j); ++q) b[j + q] -= band_(q, j) * b[j];
+  }
+  for (int j = n - 1; j >= 0; --j) {
+    double sum = b[j];
+    for (int q = 1; q <= std::min(width - 1, n - 1 - j); ++q) sum -= band_(q, j) * b[j + q];
+    b[j] = sum / band_(0, j);
+  }
+  for (std::size_t i = 0; i < motion_.size(); ++i)
+    z.segment<6>(6 * static_cast<Eigen::Index>(i)).noalias() += motion_[i] * b.segment<6>(6 * sections_.of[i]);
+}
+
+void Preconditioner::solve(const VectorXd& r, VectorXd& z) const {
+  z = r;
+  for (int t = 0; t < topology_.tubes(); ++t)
+    solve_chain(topology_.tube_begin[t], topology_.tube_begin[t + 1], lower_[0].data(), inverse_[0].data(),
+                z.data());
+  if (sections_.count > 0) add_sections(r, z);
+}
+
+Solution conjugate_gradients(const Operator& a, const Precondition& m, const VectorXd& b, double tolerance,
+                             int most, VectorXd& x) {
+  Solution out;
+  x = VectorXd::Zero(b.size());
+  VectorXd r = b, z, p, q;
+  m(r, z);
+  p = z;
+  double rz = r.dot(z);
+  const double first = rz;
+  if (!(first > 0)) return out;
+  while (out.iterations < most) {
+    a(p, q);
+    ++out.iterations;
+    const double curvature = p.dot(q);
+    if (!(curvature > 0)) {
+      out.falls = true;
+      out.motion = p;
+      return out;
+    }
+    const double by = rz / curvature;
+    x += by * p;
+    r -= by * q;
+    m(r, z);
+    const double next = r.dot(z);
+    out.residual = std::sqrt(std::fabs(next / first));
+    if (out.residual < tolerance) break;
+    p = z + (next / rz) * p;
+    rz = next;
+  }
+  return out;
+}
+
+Solution bicgstab(const Operator& a, const Precondition& m, const VectorXd& b, double tolerance, int most,
+                  VectorXd& x) {
+  Solution out;
+  x = VectorXd::Zero(b.size());
+  const double norm = b.norm();
+  if (!(norm > 0)) return out;
+  VectorXd r = b, p = b, v, s, t, z, y;
+  double rho = b.dot(r);
+  while (out.iterations < most) {
+    m(p, y);
+    a(y, v);
+    ++out.iterations;
+    const double alpha = rho / b.dot(v);
+    s = r - alpha * v;
+    out.residual = s.norm() / norm;
+    if (!std::isfinite(out.residual)) break;
+    if (out.residual < tolerance) {
+      x += alpha * y;
+      break;
+    }
+    m(s, z);
+    a(z, t);
+    ++out.iterations;
+    const double omega = t.dot(s) / t.squaredNorm();
+    x += alpha * y + omega * z;
+    r = s - omega * t;
+    out.residual = r.norm() / norm;
+    if (out.residual < tolerance || !std::isfinite(out.residual)) break;
+    const double next = b.dot(r), beta = next / rho * alpha / omega;
+    p = r + beta * (p - omega * v);
+    rho = next;
+  }
+  out.falls = !(b.dot(x) > 0);
+  return out;
+}
+
+}  // namespace ropewalk

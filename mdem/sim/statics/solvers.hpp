@@ -1,0 +1,63 @@
+// Linear systems (K + s M) x = b of ropes: conjugate gradients where K is symmetric, BiCGSTAB where it is not, with
+// each tube's chain of bonds solved exactly and, in a rope, its sections as rigid bodies for what reaches far.
+//
+// M. R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044; H. A. van der
+// Vorst, SIAM J. Sci. Stat. Comput. 13, 631 (1992), DOI 10.1137/0913035.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "sim/state/state.hpp"
+#include "sim/statics/block_matrix.hpp"
+
+namespace ropewalk {
+
+// y = A x
+using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;
+
+// The elements of a rope by sections across it: as many along each strand. None: the elements lie in no sections,
+// as in a film.
+struct Sections {
+  std::vector<int> of;  // of each element
+  int count = 0;
+};
+Sections sections_of(const Topology& topology, const State& state);
+
+// An approximate inverse, symmetric and positive.
+class Preconditioner {
+ public:
+  // Of K + shift M, with the identity in the rows of held unknowns.
+  Preconditioner(const Topology& topology, const State& state, const Sections& sections, const BlockMatrix& k,
+                 const Eigen::VectorXd& mass, double shift, const std::vector<char>& held);
+  void solve(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+
+ private:
+  void decompose_chains(const BlockMatrix& k, const Eigen::VectorXd& mass, double shift,
+                        const std::vector<char>& held);
+  void find_section_motions(const State& state, const std::vector<char>& held);
+  void decompose_sections(const BlockMatrix& k, const Eigen::VectorXd& mass, double shift);
+  void add_sections(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
+
+  using Blocks = std::vector<Block, Eigen::aligned_allocator<Block>>;
+  const Topology& topology_;
+  const Sections& sections_;
+  Blocks inverse_, lower_;  // of the pivots of each chain; L_i,i-1
+  Blocks motion_;           // of each element in the six motions of its section
+  Eigen::MatrixXd band_;    // Cholesky factor, row k of column j: (j + k, j)
+};
+
+struct Solution {
+  int iterations = 0;
+  double residual = 0;     // relative
+  bool falls = false;      // a motion of negative curvature was met, or the solution points against b
+  Eigen::VectorXd motion;  // that one, of conjugate gradients
+};
+using Precondition = std::function<void(const Eigen::VectorXd& r, Eigen::VectorXd& z)>;
+Solution conjugate_gradients(const Operator& a, const Precondition& m, const Eigen::VectorXd& b, double tolerance,
+                             int most, Eigen::VectorXd& x);
+Solution bicgstab(const Operator& a, const Precondition& m, const Eigen::VectorXd& b, double tolerance, int most,
+                  Eigen::VectorXd& x);
+
+}  // namespace ropewalk

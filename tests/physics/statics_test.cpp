@@ -1,0 +1,279 @@
+// States of rest by Newton's method against closed forms and against FIRE.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/error.hpp"
+#include "scene/ends/grip.hpp"
+#include "scene/ends/twist.hpp"
+#include "scene/loads/fix.hpp"
+#include "scene/loads/force.hpp"
+#include "scene/loads/torque.hpp"
+#include "sim/contact/line/law.hpp"
+#include "sim/statics/newton.hpp"
+#include "unit/support.hpp"
+
+namespace ropewalk {
+namespace {
+namespace UNIT {
+
+using test::element_length;
+
+const auto go_on = [](long) { return true; };
+
+struct Beam {
+  Topology topology = test::published_topology();
+  LoadsAndConstraints loads;
+  State state;
+  int last = 0;
+
+  explicit Beam(int elements) {
+    topology.add_tube(elements);
+    state = State(static_cast<std::size_t>(elements));
+    for (int i = 0; i < elements; ++i) state.position.set(i, {0, 0, i * element_length});
+    last = elements - 1;
+  }
+  double length() const { return last * element_length; }
+  const BondStiffness& bond() const { return topology.types[0].bond; }
+  Simulation make() const { return Simulation(topology, {}, loads, state, 0.01); }
+};
+
+Statics rest(Simulation& s, const RelaxGoal& goal = {1e-7, 1e-5}) {
+  return NewtonStatics(s).relax(goal, 1000, go_on);
+}
+
+TEST(Statics, CantileverTakesAFewSteps) {
+  Beam b(61);
+  const double force = 1e-3;  // eV/nm
+  b.loads.add(FixLoad({0}));
+  b.loads.add(ForceLoad({b.last}, {force, 0, 0}));
+  Simulation s = b.make();
+  const Statics end = rest(s);
+  ASSERT_TRUE(end.relaxed.at_rest);
+  EXPECT_LT(end.newton_steps, 40);
+  EXPECT_TRUE(end.symmetric);
+  EXPECT_FALSE(end.falls);
+  const double expected = force * std::pow(b.length(), 3) / (3 * b.bond().bend);
+  EXPECT_NEAR(s.state().position[b.last].x() / expected, 1, 2e-4);
+  EXPECT_NEAR(s.work() / (2 * s.forces().energy.bonds()), 1, 1e-3);
+}
+
+// The inextensible elastica under a dead end force P L^2/EI = 1, 4, 10: sideways and along, of the length.
+// K. E. Bisshopp, D. C. Drucker, Q. Appl. Math. 3, 272 (1945), DOI 10.1090/qam/13360. Here again by a shooting of
+// theta'' = -(P/EI) cos(theta).
+struct Elastica {
+  double sideways = 0, along = 0;
+};
+Elastica elastica(double load) {
+  constexpr int steps = 4000;
+  const auto shot = [&](double curvature, Elastica* out) {
+    double theta = 0, bend = curvature;
+    const double h = 1.0 / steps;
+    const auto slope = [&](double t) { return -load * std::cos(t); };
+    for (int k = 0; k < steps; ++k) {
+      const double k1 = bend, l1 = slope(theta), k2 = bend + 0.5 * h * l1, l2 = slope(theta + 0.5 * h * k1),
+                   k3 = bend + 0.5 * h * l2, l3 = slope(theta + 0.5 * h * k2), k4 = bend + h * l3,
+                   l4 = slope(theta + h * k3);
+      const double next = theta + h * (k1 + 2 * k2 + 2 * k3 + k4) / 6, middle = theta + 0.5 * h * bend;
+      if (out) {
+        out->sideways += h * (std::sin(theta) + 4 * std::sin(middle) + std::sin(next)) / 6;
+        out->along += h * (std::cos(theta) + 4 * std::cos(middle) + std::cos(next)) / 6;
+      }
+      theta = next;
+      bend += h * (l1 + 2 * l2 + 2 * l3 + l4) / 6;
+    }
+    return bend;  // zero at the free end
+  };
+  double low = 0, high = load;
+  for (int k = 0; k < 60; ++k) (shot(0.5 * (low + high), nullptr) > 0 ? high : low) = 0.5 * (low + high);
+  Elastica out;
+  shot(0.5 * (low + high), &out);
+  return out;
+}
+
+TEST(Statics, CantileverThatBendsFarIsTheElastica) {
+  EXPECT_NEAR(elastica(1).sideways, 0.3017, 1e-4);  // as Bisshopp and Drucker have it
+  EXPECT_NEAR(elastica(10).along, 0.4450, 1e-4);
+  for (const double load : {1.0, 4.0, 10.0}) {
+    Beam b(101);
+    b.topology.types[0].bond.stretch *= 100;
+    b.loads.add(FixLoad({0}));
+    b.loads.add(ForceLoad({b.last}, {load * b.bond().bend / (b.length() * b.length()), 0, 0}));
+    Simulation s = b.make();
+    ASSERT_TRUE(rest(s).relaxed.at_rest) << load;
+    const Elastica expected = elastica(load);
+    EXPECT_NEAR(s.state().position[b.last].x() / b.length(), expected.sideways, 2e-4) << load;
+    EXPECT_NEAR(s.state().position[b.last].z() / b.length(), expected.along, 2e-4) << load;
+  }
+}
+
+// The torque of a bond is GJ/a sin(phi). Only the ends' couples are along the tube: nothing else holds its spin.
+TEST(Statics, TubeBetweenCouplesTwistsAsItsBonds) {
+  Beam b(21);
+  const double moment = 100;  // eV
+  TwistLoad twist;
+  twist.moment = moment;
+  add_twist(twist, b.topology, b.loads);
+  Simulation s = b.make();
+  const Statics end = rest(s);
+  ASSERT_TRUE(end.relaxed.at_rest);
+  EXPECT_FALSE(end.symmetric);
+  EXPECT_LT(end.spinning, 1e-9);
+  const double each = std::asin(moment * element_length / b.bond().twist);
+  for (int e = 0; e < b.last; ++e)
+    EXPECT_NEAR(bond_twist_angle(frame_of(s.state().orientation[e]), frame_of(s.state().orientation[e + 1])), each,
+                1e-7);
+}
+
+// Straight to the last bit: no force acts sideways.
+Beam column(double part_of_buckling_load) {
+  Beam b(31);
+  b.loads.add(FixLoad({0}, true, true, true, false));
+  b.loads.add(FixLoad({b.last}, true, true, false, false));
+  const double euler = units::pi * units::pi * b.bond().bend / (b.length() * b.length());
+  b.loads.add(ForceLoad({b.last}, {0, 0, -part_of_buckling_load * euler}));
+  return b;
+}
+
+TEST(Statics, ColumnLeavesItsStraightStateAboveTheEulerLoad) {
+  for (const double part : {0.98, 1.02}) {
+    const Beam b = column(part);
+    Simulation s = b.make();
+    const Statics end = rest(s, {});
+    ASSERT_TRUE(end.relaxed.at_rest) << part;
+    EXPECT_FALSE(end.falls) << part;
+    EXPECT_EQ(end.relaxed.saddles, part > 1 ? 1 : 0) << part;
+    // P/Pc = 1 + slope^2/8 with the slope at the ends, and bow = slope L/pi.
+    const double expected = part > 1 ? std::sqrt(8 * (part - 1)) * b.length() / units::pi : 0;
+    EXPECT_NEAR(s.state().position[15].head<2>().norm(), expected, 0.1 * expected + 1e-4) << part;
+  }
+}
+
+// Again and again, and each time read from its bytes by another simulation.
+TEST(Statics, InterruptedGoesOnToTheSameBits) {
+  const Beam b = column(1.1);
+  for (const bool fire : {false, true}) {
+    const NewtonOptions options{fire};
+    Simulation whole = b.make(), s = b.make();
+    ASSERT_EQ(NewtonStatics(whole, options).relax({}, 4000, go_on).relaxed.saddles, 1);
+    for (int interruptions = 0;; ++interruptions) {
+      ASSERT_LT(interruptions, 1000);
+      int steps = 0;
+      if (NewtonStatics(s, options).relax({}, 4000, [&](long) { return steps++ < 3; }).relaxed.at_rest) break;
+      Simulation other = b.make();
+      other.restore(s.serialise());
+      s = std::move(other);
+    }
+    EXPECT_TRUE(s.serialise() == whole.serialise()) << fire;
+    // At rest it says the same again.
+    Simulation again = b.make();
+    again.restore(s.serialise());
+    const Statics end = NewtonStatics(again, options).relax({}, 4000, go_on);
+    EXPECT_TRUE(end.relaxed.at_rest);
+    EXPECT_EQ(end.relaxed.saddles, 1);
+    EXPECT_TRUE(again.serialise() == whole.serialise()) << fire;
+  }
+}
+
+// Seven tubes that touch, with a clamp of two elements of each tube at both ends.
+struct Rope {
+  Topology topology = test::published_topology();
+  Interaction in;
+  LoadsAndConstraints loads;
+  State state;
+
+  explicit Rope(int elements, int tubes = 7, double disorder = 0.02) {
+    topology.types[0].bond = test::anharmonic_bond();
+    topology.types[0].bond.anharmonic.max_shear = topology.types[0].bond.anharmonic.max_bend = 1;
+    state = test::disordered_bundle(topology, tubes, elements, 1.7, disorder, 3);
+    state.velocity.set_to_zero();
+    state.angular_velocity.set_to_zero();
+    in.law = line_law({test::line_contact(0.6785, 5, 0.6785, 5)});
+    in.damping.contact = {20, 1.7, 2.6};  // has no part in it
+  }
+  std::vector<int> end(End which) const {
+    std::vector<int> out;
+    for (int t = 0; t < topology.tubes(); ++t)
+      for (int k = 0; k < 2; ++k)
+        out.push_back(which == lower_end ? topology.tube_begin[t] + k : topology.tube_begin[t + 1] - 2 + k);
+    return out;
+  }
+  Simulation make() const { return Simulation(topology, in, loads, state, 0.002); }
+};
+
+GripLoad clamp(End end) {
+  GripLoad grip;
+  grip.end = end;
+  grip.depth = 2;
+  return grip;
+}
+
+TEST(Statics, ClampedRopeEndsAsByFire) {
+  Rope rope(8, 4);
+  GripLoad pulled = clamp(upper_end);
+  for (const std::size_t axis : {0u, 2u, 3u}) {
+    pulled.axes[axis].is = GripAxis::Is::loaded;
+    pulled.axes[axis].points = {{0, axis == 2 ? 20.0 : 1.5}};
+  }
+  rope.loads.add(clamp(lower_end).on_elements(rope.end(lower_end), rope.topology));
+  rope.loads.add(pulled.on_elements(rope.end(upper_end), rope.topology));
+  Simulation by_fire = rope.make(), s = rope.make();
+  ASSERT_TRUE(by_fire.relax(RelaxGoal{1e-5, 1e-4}, 100000, go_on).at_rest);
+  const Statics end = rest(s, {1e-5, 1e-4});
+  ASSERT_TRUE(end.relaxed.at_rest);
+  EXPECT_LT(end.newton_steps, 60);
+  const double of_fire = by_fire.forces().energy.potential() - by_fire.work(),
+               of_newton = s.forces().energy.potential() - s.work();
+  EXPECT_NEAR(of_newton, of_fire, 1e-4);
+  EXPECT_LT(s.largest_force(), 1e-5);
+}
+
+// With steps that grow small as their squares: the tangent is the derivative of the forces, couples included.
+TEST(Statics, TwistedRopeComesToRest) {
+  Rope rope(12);
+  TwistLoad twist;
+  twist.moment = 80;
+  add_twist(twist, rope.topology, rope.loads);
+  Simulation s = rope.make();
+  const double before = s.total_energy() - s.account().supplied();
+  const Statics end = rest(s, {1e-6, 1e-5});
+  ASSERT_TRUE(end.relaxed.at_rest);
+  EXPECT_FALSE(end.symmetric);
+  EXPECT_LT(end.newton_steps, 80);
+  EXPECT_NEAR(s.total_energy() - s.account().supplied(), before, 1e-9) << "the account of energy holds";
+  EXPECT_GT(s.forces().energy.twist, 1);
+}
+
+TEST(Statics, MotionsThatNothingHoldsAreNamed) {
+  using ::testing::HasSubstr;
+  const auto why = [](const Simulation& s) { return NewtonStatics::refusal(s).why; };
+  Beam b(5);
+  EXPECT_EQ(why(b.make()), "");
+  b.loads.add(ForceLoad({4}, {0, 1, 0}));
+  EXPECT_THAT(why(b.make()), HasSubstr("moves the whole along y"));
+  b.loads.add(FixLoad({0}));
+  EXPECT_EQ(why(b.make()), "");
+  Beam spun(5);
+  spun.loads.add(TorqueLoad({4}, {0, 0, 1}));
+  EXPECT_THAT(why(spun.make()), HasSubstr("spins tube 0 about its axis"));
+  Rope rope(5);
+  rope.loads.add(TorqueLoad({4}, {0, 0, 1}));
+  rope.loads.add(TorqueLoad({9}, {0, 0, -1}));
+  EXPECT_THAT(why(rope.make()), HasSubstr("spins tube 0 about its axis"));
+}
+
+TEST(Statics, ALoadThatATubeDoesNotBearIsNamed) {
+  Beam b(21);
+  TwistLoad twist;
+  twist.moment = 1.1 * b.bond().twist / element_length;
+  add_twist(twist, b.topology, b.loads);
+  Simulation s = b.make();
+  const Statics end = NewtonStatics(s).relax({}, 300, go_on);
+  EXPECT_FALSE(end.relaxed.at_rest);
+  EXPECT_NE(overloaded_bond(s).find("slips at a twist of 90 degrees"), std::string::npos) << overloaded_bond(s);
+}
+
+}  // namespace UNIT
+}  // namespace
+}  // namespace ropewalk
