@@ -118,9 +118,6 @@ class InputsOf {
         if (scene_.bond.anharmonic) varied(name, sigma, "", {n.key});
       } else if (in("bond.pull.")) {
         if (breaks()) varied("pull_" + name, sigma, "", {n.key});
-      } else if (in("bond.pull.")) {
-        // Its forces have errors of 1e-6, and its end is that of the data: another one would shift them all.
-        if (scene_.bond.anharmonic) out_.not_varied.push_back("bond.pull" + of + " (forces of relaxed cells)");
       } else if (in("bond.")) {
         if (!n.standard_error)
           none += (none.empty() ? "" : ", ") + name;
