@@ -312,7 +312,7 @@ TEST(Failure, BadOnesAreRefused) {
   EXPECT_THAT(
       message("[failure]\nstrain = 0.3\n"),
       HasSubstr("failure.toml:13: failure.strain: is 0.3, and the bonds of cnt-10-10-tersoff follow its atoms "
-                "up to 0.255"));
+                "up to 0.26"));
   EXPECT_THAT(message("[failure]\nstrain = 0.16\n", "[bond]\nlaw = \"harmonic\"\n"),
               HasSubstr("up to 0.0686; leave [bond] law out, or take at most 0.0686"));
   EXPECT_THAT(message("[failure]\nfrom = \"atoms\"\n", "[bond]\nlaw = \"harmonic\"\n"),
