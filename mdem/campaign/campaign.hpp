@@ -58,9 +58,9 @@ struct GatherOptions {
   bool series = false;               // every row of every log instead
   std::vector<std::string> columns;  // of the log; empty: all, and result_columns()
 };
-// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the observables, what
-// came of it, the limits passed.
-// A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
+// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the
+// observables, what came of it, the limits passed. A point without rows has empty cells. Everything in it follows
+// from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
 
