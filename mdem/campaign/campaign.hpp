@@ -62,9 +62,9 @@ struct GatherOptions {
   // Gets a sentence for each point whose means have no error; null: nobody asks.
   std::vector<std::string>* short_of = nullptr;
 };
-// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the observables, what
-// came of it, the limits passed.
-// A point without rows has empty cells. Everything in it follows from the scenes alone: no times of the machine.
+// One line per point: its name, the values of the keys that vary, how it ended and its first limit, the
+// observables, what came of it, the limits passed. A point without rows has empty cells. Everything in it follows
+// from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);
 

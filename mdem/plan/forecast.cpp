@@ -171,16 +171,16 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
 std::string words_of(const QuasiStatic& q) {
   constexpr double enough = 0.05;
   const std::string percent = fmt::format(q.error < 0.1 ? "{:.2g}" : "{:.0f}", 100 * q.error);
-  std::string text =
-      q.slice
-          ? fmt::format(
-                "A twist wave needs {:.3g} ps from the ends of the slice to its middle and the ramp lasts {:.3g} ps: "
-                "the torque may be up to {} % off its quasi-static value.",
-                0.5 * q.travel, q.time, percent)
-          : fmt::format(
-                "A twist wave needs {:.3g} ps from end to end and the ramp lasts {:.3g} ps: the torque of either end "
-                "may be up to {} % off its quasi-static value.",
-                q.travel, q.time, percent);
+  std::string text = q.slice ? fmt::format(
+                                   "A twist wave needs {:.3g} ps from the ends of the slice to its middle and the "
+                                   "ramp lasts {:.3g} ps: "
+                                   "the torque may be up to {} % off its quasi-static value.",
+                                   0.5 * q.travel, q.time, percent)
+                             : fmt::format(
+                                   "A twist wave needs {:.3g} ps from end to end and the ramp lasts {:.3g} ps: the "
+                                   "torque of either end "
+                                   "may be up to {} % off its quasi-static value.",
+                                   q.travel, q.time, percent);
   if (q.error > enough)
     text += fmt::format(" Ramp over {:.3g} ps for {:.2g} %.", q.time * q.error / enough, 100 * enough);
   if (q.drag > 0.01)

@@ -62,7 +62,8 @@ std::vector<Recipe> recipes() {
         grip("lower"),
         grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [200, 100], [230, 100]] }"}})}},
       {"twist-to-failure",
-       "19 (5,5) tubes of 20 nm turned at fixed length until they break: the largest torque, its angle, the first break",
+       "19 (5,5) tubes of 20 nm turned at fixed length until they break: the largest torque, its angle, the first "
+       "break",
        {{"", {{"parameters", "\"cnt-5-5-tersoff\""}}},
         rope_of("19", "20"),
         grip("lower"),

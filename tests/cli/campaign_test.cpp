@@ -439,7 +439,7 @@ TEST_F(Campaign, PointsFarBeyondALimitAreNamed) {
   sweep_file("[vary]\ngrip.1.about_z.rotation_deg = [3, 120]\ngrip.1.about_z.rate_deg_per_ps = [20]\n");
   const Outcome o = run("sweep s.toml");
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_NE(o.out.find("far beyond a limit: rotation_deg-120 ("), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("far beyond a limit: rotation_deg-120, beyond twist_deg from "), std::string::npos) << o.out;
   EXPECT_EQ(o.out.find("far beyond a limit: rotation_deg-3 "), std::string::npos) << o.out;
 }
 

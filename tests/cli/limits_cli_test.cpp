@@ -62,7 +62,7 @@ TEST_F(Limits, AreSaidOnceAndTheRunGoesOn) {
                          "in tube [0-6], element [0-9]+"));
   EXPECT_THAT(o.out, HasSubstr("Torque rose to "));
   EXPECT_THAT(o.err, HasSubstr("note: The load may bring twist_deg to 2"));
-  EXPECT_EQ(said(o.err).find("twist_deg"), said(o.err).rfind("twist_deg")) << "once";
+  EXPECT_EQ(said(o.err).find("limits.twist_deg"), said(o.err).rfind("limits.twist_deg")) << "once";
   EXPECT_THAT(o.out, HasSubstr("Limits passed: twist_deg"));
   const Json json = limits_of("d");
   const Json& twist = json.at("limits").at(1);
@@ -146,12 +146,12 @@ TEST_F(Limits, PassedByFarGiveAStatus) {
   const Outcome swept = run("sweep sweep.toml");
   EXPECT_EQ(swept.code, 0) << swept.err;
   EXPECT_THAT(swept.out, HasSubstr("1 of them is beyond a limit of the model"));
-  EXPECT_THAT(swept.out, HasSubstr("far beyond a limit: tubes-7, beyond twist_deg from "));
+  EXPECT_THAT(swept.out, HasSubstr("far beyond a limit: all, beyond twist_deg from "));
   const std::string table = slurp(dir / "sweep/table.csv");
   EXPECT_THAT(table, HasSubstr("twist_deg up to"));
   EXPECT_THAT(table, HasSubstr("point,rope.tubes,status,first_limit,first_limit_ps,"));
-  EXPECT_THAT(table, HasSubstr("\ntubes-7,7,finished,twist_deg,"));
-  EXPECT_THAT(slurp(dir / "sweep/messages/tubes-7.txt"), Not(HasSubstr("--on-limit refine")))
+  EXPECT_THAT(table, HasSubstr("\nall,7,finished,twist_deg,"));
+  EXPECT_THAT(slurp(dir / "sweep/messages/all.txt"), Not(HasSubstr("--on-limit refine")))
       << "a sweep takes no refine";
 }
 

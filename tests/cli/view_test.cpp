@@ -143,9 +143,7 @@ TEST_F(View, LinksAreThereAsLongAsTheyHold) {
   ASSERT_GT(broken, 0u);
   ASSERT_GT(formed, broken);
   EXPECT_NE(o.out.find("Stress "), std::string::npos) << o.out;
-  EXPECT_NE(o.out.find(fmt::format("{} of {} links broke.", broken, formed)),
-            std::string::npos)
-      << o.out;
+  EXPECT_NE(o.out.find(fmt::format("{} of {} links broke.", broken, formed)), std::string::npos) << o.out;
   ASSERT_EQ(run("view d").code, 0);
   const auto links_at = [&](const std::string& hash) {
     const Browsed page = looked([&] { return browse("d/view.html", hash); }, is_settled);
