@@ -31,7 +31,8 @@ Scene scene_with(const std::string& tables) {
 
 std::string refusal_of(const std::string& tables) {
   try {
-    (void)prepare(scene_with(tables));
+    Scene scene = scene_with(tables);
+    (void)prepare(scene);
   } catch (const InputError& e) {
     return e.what();
   }
