@@ -13,7 +13,7 @@ std::optional<Stability> stability_of(const Simulation& s, double most_bytes, st
   if (!free) return why = "clamps tie several elements", std::nullopt;
   if (const std::string term = term_without_tangent(s); !term.empty())
     return why = term + " has no tangent", std::nullopt;
-  if (bytes_of_decomposition(s) > most_bytes) return why = "the rope is too thick for it here", std::nullopt;
+  if (bytes_of_decomposition(s) > most_bytes) return why = "that takes long in a rope so thick", std::nullopt;
   try {
     const Modes found = modes_of(tangent_by_blocks(s), *free, {});
     Stability out;
