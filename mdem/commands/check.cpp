@@ -10,6 +10,7 @@
 #include "plan/forecast.hpp"
 #include "run/expectations.hpp"
 #include "run/moving_scene.hpp"
+#include "run/relaxation_loop.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
 #include "scene/memory.hpp"
@@ -80,12 +81,15 @@ void say_sizes(const Scene& scene, const Prepared& p) {
 
 // A run against the [[expect]] tables of its scene.
 int check_run(const RunDirectory& run) {
-  const Scene scene = read_run_scene(run);
+  Scene scene = read_run_scene(run);
   if (scene.expected.empty())
     throw InputError({run.scene(), 0, ""}, "has no [[expect]] table, so that there is nothing to judge the run by",
                      "write one into the scene: ropewalk help scene expect");
-  if (const Manifest m = read_manifest(run.manifest()); m.status != "finished" && m.status != "refined")
-    throw InputError({run.path, 0, ""}, fmt::format("is a run that is {}, and is judged at its end", m.status),
+  const Manifest m = read_manifest(run.manifest());
+  const double whole = prepare(scene).duration, reached = read_log(run.log()).back()["time_ps"];
+  if (m.status != "finished" || (m.reason.empty() && reached < 0.999 * whole))
+    throw InputError({run.path, 0, ""},
+                     fmt::format("is a run that is {} at {:.4g} ps, and is judged at its end", m.status, reached),
                      "go on with it: ropewalk resume " + run.path);
   const std::vector<Judgement> all = judge(scene.expected, run);
   for (const Judgement& j : all) fmt::print("{}\n", j.words);
@@ -100,6 +104,7 @@ int check_command(const std::string& path) {
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
+  refuse_statics(scene, simulation);
   if (!scene.stops.empty()) {
     const EnergyAccount none = account_of(simulation, {}, 0);
     refuse_stops_without_value(scene, log_row(make_observer(scene, p), scene, p.topology, p.state, none));

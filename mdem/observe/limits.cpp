@@ -24,6 +24,8 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
   const double a = type.element_length;
   Peaks out;
   for (std::size_t k = 0; k < limit_count; ++k) out[k].limit = limits.*limit_kinds()[k].limit;
+  Peak pressed = out[strain];
+  if (limits.compression > 0) pressed.limit = limits.compression;
   const int from = topology.tube_begin[tube], to = topology.tube_begin[tube + 1];
   Frame frame = frame_of(state.orientation[static_cast<std::size_t>(from)]);
   for (int e = from; e < to; ++e) {
@@ -37,9 +39,14 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
     raise(out[twist], twisted, e);
     raise(out[kink_curvature], bent / a, e);
     raise(out[wall_twist], type.radius * twisted / a, e);
-    raise(out[strain], std::fabs((state.position[i + 1] - state.position[i]).norm() / a - 1), e);
+    const double stretched = (state.position[i + 1] - state.position[i]).norm() / a - 1;
+    raise(stretched < 0 ? pressed : out[strain], std::fabs(stretched), e);
     frame = next;
   }
+  const bool watched = pressed.limit > 0 && out[strain].limit > 0;
+  if (out[strain].element < 0 ||
+      (watched ? pressed.ratio() > out[strain].ratio() : pressed.value > out[strain].value))
+    out[strain] = pressed;
   return out;
 }
 
@@ -95,7 +102,8 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
       {"wall_twist", "", 1, &Limits::wall_twist, "radius times twist per length is",
        "the wall of a real tube collapses there", "twist it less, or do not trust its torsion from now on", false},
       {"strain", "", 1, &Limits::strain, "the bond to the next element is strained by",
-       "the law of the bond ends there", "pull or press it less, or do not trust its force from now on", false},
+       "the law of the bond ends there", "pull or press it less, or do not trust its force from now on",
+       false},
       {"press_nm", "nm", 1, &Limits::overlap, "the tube is pressed into another one by",
        "the contact law is only continued there", "load it more gently, or start it without overlaps", false},
       {"speed_nm_per_ps", "nm/ps", 1, &Limits::speed, "the element moves with",
@@ -155,7 +163,8 @@ Limits default_limits(const TubeType& type, const Validity& validity) {
   Limits limits;
   limits.kink_curvature = validity.kink_curvature;
   limits.wall_twist = validity.twist_collapse;
-  limits.strain = validity.stretch;
+  limits.strain = validity.largest_tension();
+  limits.compression = validity.stretch;
   limits.pressure = collapse_pressure(type.radius);
   limits.speed = stopped * std::sqrt(type.bond.stretch * type.element_length / type.mass);
   return limits;

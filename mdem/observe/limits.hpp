@@ -53,10 +53,11 @@ struct Limits {
   double twist = 19.9 * units::degree;  // rad per bond
   double kink_curvature = 0;            // 1/nm
   double wall_twist = 0;
-  double strain = 0;
-  double overlap = 0;   // nm
-  double speed = 0;     // nm/ps
-  double pressure = 0;  // eV/nm^3
+  double strain = 0;       // of a pulled bond
+  double compression = 0;  // strain of a pressed bond; 0: as of a pulled one
+  double overlap = 0;      // nm
+  double speed = 0;        // nm/ps
+  double pressure = 0;     // eV/nm^3
   double energy_drift = 0.05;
   double shock = 0.25;
 };

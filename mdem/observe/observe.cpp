@@ -29,7 +29,7 @@ void count_bond(const TubeType& type, const State& state, const Validity& validi
   const double strain = (state.position[i + 1] - state.position[i]).norm() / a - 1.0;
   out.kinked += beyond(bend / a, validity.kink_curvature);
   out.overtwisted += beyond(type.radius * std::abs(twist) / a, validity.twist_collapse);
-  out.overstretched += beyond(std::abs(strain), validity.stretch);
+  out.overstretched += beyond(strain, validity.largest_tension()) + beyond(-strain, validity.stretch);
 }
 
 // The quantities of single tubes.

@@ -381,7 +381,7 @@ std::vector<Limit> limits(const Validity& v) {
           {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
            "The wall of a real tube collapses into a ribbon there. Harmonic bonds store more torsional "
            "energy than the tube would; the torque of anharmonic ones stays constant, as that of a tube does."},
-          {"Overstretched", "overstretched", limit(v.stretch, "strain beyond", ""),
+          {"Overstretched", "overstretched", limit(v.largest_tension(), "strain beyond", ""),
            "In compression the wall of a real tube buckles there; in tension harmonic bonds overestimate the "
            "force."}};
 }

@@ -55,10 +55,16 @@ std::string stability_words(const Simulation& simulation, const Statics& end) {
   constexpr double per_ns = 1000;       // 1/ps in 1/ns
   if (end.falls) return "it rests on a saddle, and stays there";
   std::string why;
-  if (const auto found = stability_of(simulation, affordable, why))
-    return found->stable() ? fmt::format("stable: no motion grows faster than {:.2g}/ns", found->neutral * per_ns)
-                           : fmt::format("unstable: a motion grows by {:.3g}/ns, which `ropewalk modes` names",
-                                         found->growth * per_ns);
+  if (const auto found = stability_of(simulation, affordable, why)) {
+    if (found->stable())
+      return fmt::format("stable: no motion grows faster than {:.2g}/ns", found->neutral * per_ns);
+    // Slower ones were seen to come and go with what is left of forces and moments at rest.
+    if (found->growth <= NewtonOptions().slow)
+      return fmt::format("no motion grows faster than {:.2g}/ns; one of {:.2g}/ns cannot be told from the residual",
+                         NewtonOptions().slow * per_ns, found->growth * per_ns);
+    return fmt::format("unstable: a motion grows by {:.3g}/ns, which `ropewalk modes` names",
+                       found->growth * per_ns);
+  }
   if (end.symmetric)
     return fmt::format("stable: no motion grows faster than {:.2g}/ns", NewtonOptions().slow * per_ns);
   return "whether it is stable under these couples is not known (" + why + "): `ropewalk modes` tells";

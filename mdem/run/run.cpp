@@ -103,7 +103,9 @@ RunResult Run::finish() {
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
-    r.expected = judge(parts_.moving.scene.expected, r.directory);
+    const bool whole =
+        parts_.moving.relaxes() || !parts_.reason.empty() || parts_.step() >= parts_.schedule.scene_end();
+    if (whole) r.expected = judge(parts_.moving.scene.expected, r.directory);
     r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
     add_results(r);
   } else {

@@ -65,6 +65,7 @@ std::vector<Validity> validities(const Scene& scene, const Topology& topology) {
   for (std::size_t type = 0; type < scene.sets.size(); ++type) {
     const ParameterSet& set = scene.sets[type];
     all.push_back(set.validity);
+    if (scene.bond.anharmonic && set.pull) all.back().tension = set.end_of_stretch();
     all.back().twist_collapse = set.validity.collapse_at(set.radius, collapsing_length(scene, topology, type));
   }
   return all;

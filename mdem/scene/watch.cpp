@@ -47,6 +47,8 @@ Watched watched_of(const Scene& scene, const Topology& topology, const LoadsAndC
     if (scene.contact.legacy_torque) limits.energy_drift = 0;  // it gains energy, and is there to show it
     for (std::size_t k = 0; k < limit_count; ++k)
       if (scene.limits[k]) limits.*limit_kinds()[k].limit = *scene.limits[k];
+    for (std::size_t k = 0; k < limit_count; ++k)
+      if (scene.limits[k] && limit_kinds()[k].limit == &Limits::strain) limits.compression = limits.strain;
     if (scene.run.mode == RunOptions::Mode::relax) limits.speed = limits.shock = 0;  // no motion of tubes
     out.limits.push_back(limits);
   }

@@ -102,6 +102,11 @@ class ParameterSet(Mapping[str, Quantity]):
             for key in name.split("."):
                 at = at[key]
             at.update(value=float(value), standard_error=0.0, origin="chosen")
+            if name == "bond.EA" and "pull" in tables["bond"]:
+                # The forces of the pull go on from that of EA.
+                force, factor = tables["bond"]["pull"]["force"], float(value) / self._quantities[name].value
+                for key, row in force.items():
+                    force[key] = [factor * number for number in row]
         tables["meta"]["name"] = os.path.splitext(os.path.basename(target))[0]
         write_whole(target, toml_of(tables).encode())
         try:
