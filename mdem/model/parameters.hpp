@@ -71,8 +71,8 @@ struct Validity {
   double kink_curvature = 0;    // 1/nm
   double twist_collapse = 0;    // radius times twist per length: of a tube of 12 nm between held ends
   double stretch = 0;           // strain, tension or compression
-  double tension = 0;           // strain of a pulled bond, where atoms were pulled further; 0: stretch
   double endless_collapse = 0;  // twist_collapse of an endless tube; 0: not known
+  double tension = 0;           // strain of a pulled bond, where atoms were pulled further; 0: stretch
 
   double largest_tension() const { return tension > 0 ? tension : stretch; }
   // twist_collapse of a tube of radius r and length L between held ends, which keep it round:

@@ -77,6 +77,27 @@ TEST(Limits, PeaksNameTheElement) {
 }
 
 // A tenth of the speed of sound along graphene, 22 nm/ps.
+// Atoms that were pulled further than the terms of strain raise the limit of tension alone.
+TEST(Limits, TensionAndCompressionHaveLimitsOfTheirOwn) {
+  Topology topology = published_topology();
+  topology.add_tube(5);
+  Validity validity{0.087, 0.05, 0.07};
+  validity.tension = 0.26;
+  const Limits limits = default_limits(topology.types[0], validity);
+  const auto peak = [&](double move) {
+    State s = straight(topology);
+    s.position.set(4, s.position[4] + Vector3(0, 0, move * test::element_length));
+    return peak_of(peaks(topology, s, {}, {{limits}, {}}), "strain");
+  };
+  EXPECT_NEAR(peak(0.2).value, 0.2, 1e-12);
+  EXPECT_FALSE(peak(0.2).passed());
+  EXPECT_TRUE(peak(0.27).passed());
+  EXPECT_TRUE(peak(-0.08).passed());
+  EXPECT_NEAR(peak(-0.08).limit, 0.07, 1e-12);
+  EXPECT_FALSE(peak(-0.06).passed());
+  EXPECT_EQ(peak(-0.06).element, 3);
+}
+
 TEST(Limits, SpeedIsATenthOfThatOfSound) {
   const Limits limits = default_limits(published_topology().types[0], {});
   EXPECT_NEAR(limits.speed, 2.15, 0.05);
