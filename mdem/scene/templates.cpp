@@ -67,7 +67,7 @@ std::vector<Recipe> recipes() {
        {{"", {{"parameters", "\"cnt-5-5-tersoff\""}}},
         rope_of("19", "20"),
         grip("lower"),
-        grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [200, 240]] }"}}),
+        grip("upper", {{"about_z", "{ rotation_deg = [[0, 0], [158, 190]] }"}}),
         {"failure", {{"strain", "0.06"}, {"strain_deviation", "0.006"}}}}},
       {"constant-tension",
        "37 tubes of 67.8 nm, pulled with 200 nN and turned: how much does the rope contract?",
