@@ -86,8 +86,9 @@ int check_run(const RunDirectory& run) {
     throw InputError({run.scene(), 0, ""}, "has no [[expect]] table, so that there is nothing to judge the run by",
                      "write one into the scene: ropewalk help scene expect");
   const Manifest m = read_manifest(run.manifest());
-  const double whole = prepare(scene).duration, reached = read_log(run.log()).back()["time_ps"];
-  if (m.status != "finished" || (m.reason.empty() && reached < 0.999 * whole))
+  const Prepared p = prepare(scene);
+  const double reached = read_log(run.log()).back()["time_ps"];
+  if (m.status != "finished" || (m.reason.empty() && reached < p.duration - 0.75 * p.time_step))
     throw InputError({run.path, 0, ""},
                      fmt::format("is a run that is {} at {:.4g} ps, and is judged at its end", m.status, reached),
                      "go on with it: ropewalk resume " + run.path);

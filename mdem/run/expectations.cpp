@@ -35,7 +35,10 @@ double value_at(const std::string& column, double time, const std::vector<LogRow
     const double before = rows[k - 1]["time_ps"], share = (time - before) / (now - before);
     return (1 - share) * rows[k - 1][column] + share * rows[k][column];
   }
-  return none;
+  // Whole steps may end a little before the duration.
+  const std::size_t n = rows.size();
+  const bool near = n > 1 && time - rows[n - 1]["time_ps"] < rows[n - 1]["time_ps"] - rows[n - 2]["time_ps"];
+  return near ? rows.back()[column] : none;
 }
 
 }  // namespace

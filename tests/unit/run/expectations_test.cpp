@@ -49,7 +49,8 @@ TEST(Expectations, AreJudgedAtTheirTimeAndAtTheEnd) {
   EXPECT_FALSE(holds({}, 11.4, 0.5));
   EXPECT_TRUE(holds(1, 5, 1e-9)) << "between two rows";
   EXPECT_TRUE(holds(2, 10, 1e-9));
-  EXPECT_FALSE(holds(5, 12, 1)) << "no row is there";
+  EXPECT_TRUE(holds(4.1, 12, 1)) << "whole steps end a little before";
+  EXPECT_FALSE(holds(7, 12, 1)) << "no row is there";
   EXPECT_FALSE(judge({{"tension_upper_nN", {}, 0, 1e12}}, rows).front().holds) << "it has no value";
   EXPECT_FALSE(judge({{"twist_deg", {}, 0, 1e12}}, std::vector<LogRow>()).front().holds) << "no row at all";
   const std::vector<Judgement> all = judge({{"twist_deg", {}, 12, 1}, {"twist_deg", 2, 12, 1}}, rows);

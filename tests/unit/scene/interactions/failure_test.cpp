@@ -179,7 +179,7 @@ TEST(Failure, BreaksWhereATubeIsTwistedTooFar) {
             failure + "[run]\nduration_ps = 40\n",
         "failure.toml");
   };
-  Simulation s = begun(twisted("[failure]\nstrain = 0.5\n"));
+  Simulation s = begun(twisted("[failure]\nstrain = 0.06\n"));
   const auto largest_twist = [&s] {
     double most = 0;
     const State& state = s.state();
