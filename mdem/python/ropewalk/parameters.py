@@ -81,7 +81,8 @@ class ParameterSet(Mapping[str, Quantity]):
     def changed(
         self, changes: Mapping[str, float] = {}, out: str | os.PathLike[str] = "", **more: float
     ) -> ParameterSet:
-        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is.
+        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is. Where
+        the law of stretch is changed, the pull of atoms, `[bond.pull]`, is left out.
 
         Arguments:
             changes: values by name, each in the unit that this set has it in: {"bond.EA": 650}
@@ -102,11 +103,8 @@ class ParameterSet(Mapping[str, Quantity]):
             for key in name.split("."):
                 at = at[key]
             at.update(value=float(value), standard_error=0.0, origin="chosen")
-            if name == "bond.EA" and "pull" in tables["bond"]:
-                # The forces of the pull go on from that of EA.
-                force, factor = tables["bond"]["pull"]["force"], float(value) / self._quantities[name].value
-                for key, row in force.items():
-                    force[key] = [factor * number for number in row]
+            if name.startswith(("bond.EA", "bond.anharmonic.")):
+                tables["bond"].pop("pull", None)  # which goes on from these
         tables["meta"]["name"] = os.path.splitext(os.path.basename(target))[0]
         write_whole(target, toml_of(tables).encode())
         try:

@@ -147,7 +147,8 @@ class Run:
     def first_limit(self) -> Optional[Limit]:
         """The limit that was passed first, in its unit; what comes after `passed_at_ps` is beyond the model. None: all hold."""
         passed = [limit for limit in self.limits if limit["passed"]]
-        return min(passed, key=lambda limit: (limit["passed_at_ps"], limit["passed_at_step"]), default=None)
+        passed.sort(key=lambda limit: (limit["passed_at_ps"], limit["passed_at_step"]))
+        return passed[0] if passed else None
 
     @property
     def results(self) -> dict[str, Any]:

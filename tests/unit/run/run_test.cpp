@@ -36,7 +36,7 @@ const std::string linked =
     clamps + "z = { strain = [[0, 0], [8, 0.05]] }\n[run]\nduration_ps = 9\nlog_every_ps = 1\n";
 const std::string refined = head +
                             "element_length_nm = 4\n[rope]\ntubes = 7\nlength_nm = 24\n[twist]\nmoment_nN_nm = "
-                            "25\nrate_nN_nm_per_ps = 6\n[run]\nduration_ps = 8\nlog_every_ps = 0.7\n";
+                            "22\nrate_nN_nm_per_ps = 6\n[run]\nduration_ps = 8\nlog_every_ps = 0.7\n";
 const std::string relaxed =
     head +
     "[chain]\nelements = 8\n[[load]]\nkind = \"torque\"\nelements = [0]\ntorque_nN_nm = [0, -20, 0]\n[[load]]\n"
