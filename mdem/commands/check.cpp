@@ -10,7 +10,6 @@
 #include "plan/forecast.hpp"
 #include "run/expectations.hpp"
 #include "run/moving_scene.hpp"
-#include "run/relaxation_loop.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
 #include "scene/memory.hpp"
@@ -105,7 +104,6 @@ int check_command(const std::string& path) {
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);
   Simulation simulation = start(scene, p);
-  refuse_statics(scene, simulation);
   if (!scene.stops.empty()) {
     const EnergyAccount none = account_of(simulation, {}, 0);
     refuse_stops_without_value(scene, log_row(make_observer(scene, p), scene, p.topology, p.state, none));

@@ -15,7 +15,7 @@ inline constexpr int not_as_expected = 8;
 
 struct Judgement {
   bool holds = false;
-  std::string words;  // "twist_deg at 100 ps is 162.6: within 0.5 of 162.4, as expected"
+  std::string words;  // "geometric_twist_deg is 162.6 at 100 ps, as expected: 162.4 ± 0.5"
 };
 
 // Rows in the order of time. A column without a value at that time, or a time that no rows enclose, is a miss.

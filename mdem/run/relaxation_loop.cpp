@@ -41,12 +41,6 @@ StopReason RelaxationLoop::go() {
   return why;
 }
 
-void refuse_statics(const Scene& scene, const Simulation& simulation) {
-  if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
-  const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
-  if (!refused.why.empty()) throw InputError({scene.path, 0, "run.solver"}, refused.why, refused.remedy);
-}
-
 namespace {
 
 // By the rates of its modes where that is cheap. Pivots or quotients of the tangent do not tell under couples.

@@ -9,9 +9,6 @@
 
 namespace ropewalk {
 
-// Throws InputError for a scene whose states of rest Newton's method cannot find.
-void refuse_statics(const Scene& scene, const Simulation& simulation);
-
 class RelaxationLoop {
  public:
   explicit RelaxationLoop(RunParts& run) : run_(run) {}

@@ -8,7 +8,6 @@
 #include "model/error.hpp"
 #include "plan/forecast.hpp"
 #include "run/events_file.hpp"
-#include "run/relaxation_loop.hpp"
 #include "run/run.hpp"
 #include "scene/state_files.hpp"
 
@@ -17,7 +16,6 @@ namespace ropewalk {
 void Run::check_before_start() const {
   refuse_cooling(parts_.moving.scene, parts_.moving.prepared);
   const MovingScene& m = parts_.moving;
-  refuse_statics(m.scene, m.simulation);
   if (!m.scene.stops.empty())
     refuse_stops_without_value(m.scene, log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account()));
   parts_.limits.check_before_start();

@@ -15,6 +15,7 @@
 #include "scene/state_files.hpp"
 #include "scene/term_damping.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/statics/newton.hpp"
 
 namespace ropewalk {
 namespace {
@@ -296,11 +297,23 @@ EndElements ends_of(const LoadsAndConstraints& loads, const Topology& topology) 
   return ends;
 }
 
+namespace {
+
+// Newton's method has no answer for these.
+void refuse_statics(const Scene& scene, const Simulation& simulation) {
+  if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
+  const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
+  if (!refused.why.empty()) throw InputError({scene.path, 0, "run.solver"}, refused.why, refused.remedy);
+}
+
+}  // namespace
+
 Simulation start(const Scene& scene, const Prepared& p) {
   Simulation simulation(p.topology, p.interaction, p.loads, p.state, p.time_step, scene.contact.skin, p.stepping);
   simulation.set_gauges(ends_of(p.loads, p.topology), p.state);
   refuse_first_step(scene, simulation);
   refuse_loose_tolerance(scene, simulation);
+  refuse_statics(scene, simulation);
   return simulation;
 }
 

@@ -425,7 +425,7 @@ const SceneTemplate& template_named(const std::string& name) {
 
 TEST(Templates, AllAreReadAndBuilt) {
   const Folder folder;
-  EXPECT_EQ(scene_templates().size(), 22u);
+  EXPECT_EQ(scene_templates().size(), 23u);
   for (const SceneTemplate& t : scene_templates()) {
     SCOPED_TRACE(t.name + "\n" + t.text);
     Scene scene;
@@ -516,7 +516,7 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
     for (const char* table : {"rope", "twist", "start", "thermostat", "contact", "damping", "observe"})
       text += fmt::format("[{}]\n{}", table, keys_of(table, defaults));
     return choices(
-        scene_from(text + "[run]\n" + keys_of("run", defaults, "force_tolerance_nN energy_tolerance max_steps")));
+        scene_from(text + "[run]\n" + keys_of("run", defaults, "solver force_tolerance_nN energy_tolerance max_steps")));
   };
   EXPECT_EQ(dynamics(true), dynamics(false));
   const auto relax = [](bool defaults) {

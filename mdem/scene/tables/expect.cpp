@@ -31,7 +31,7 @@ const KeyTable<Expectation>& expect_table() {
   static const KeyTable<Expectation> table = {
       "expect",
       "any number of these: what the run should give; a run that misses one ends with exit code 8",
-      {Key::custom("column", "", required("\"twist_deg\""), "of log.csv",
+      {Key::custom("column", "", required("\"geometric_twist_deg\""), "of log.csv",
                    [](const TomlTable& t, const Scene&, Expectation& e) { e.column = t.string("column"); }),
        Key::custom("at_ps", "ps", otherwise("100", "the end of the run"),
                    "the time; between two rows the value follows the line through both", read_at),

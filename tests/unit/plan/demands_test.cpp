@@ -86,7 +86,9 @@ TEST(Demands, HaveTheSignsOfStartAndLoad) {
 TEST(Demands, GoBeyondHookesLaw) {
   const auto pulled = [](double force) {
     return fmt::format(
-        "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = {{ force_nN = [[0, 0], [100, {}]] }}\n", force);
+        "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = {{ force_nN = [[0, 0], [100, {}]] "
+        "}}\n[limits]\nstrain = 0.0686\n",
+        force);
   };
   const Ahead rope(pulled(600)), far(pulled(900));
   EXPECT_NEAR(rope.demands.largest().strain, 0.0675, 0.0005);
@@ -97,7 +99,8 @@ TEST(Demands, GoBeyondHookesLaw) {
 }
 
 TEST(Demands, OfASliceThatIsDrawnOutAreKnown) {
-  const Ahead slice("[periodic]\ntwist_deg_per_nm = [[0, 0]]\nstrain = [[0, 0], [100, 0.08]]\n");
+  const Ahead slice(
+      "[periodic]\ntwist_deg_per_nm = [[0, 0]]\nstrain = [[0, 0], [100, 0.08]]\n[limits]\nstrain = 0.0686\n");
   EXPECT_NEAR(slice.demands.at(100).strain, 0.08, 1e-6);
   EXPECT_THAT(slice.notes(), HasSubstr("strain to 0.08, from about 85.8 ps on"));
   const Ahead pulled("[periodic]\ntwist_deg_per_nm = [[0, 0]]\ntension_nN = [[0, 0], [100, 600]]\n");

@@ -47,7 +47,7 @@ TEST(QuasiStatic, ASliceIsAsFarFromRestAsARopeOfItsLengthBetweenClamps) {
   EXPECT_NEAR(seen.travel, rope.travel, 0.03 * rope.travel);
   EXPECT_NEAR(seen.time, rope.time, 1e-9);
   EXPECT_NEAR(seen.error, rope.error, 0.05 * rope.error);
-  EXPECT_THAT(words_of(seen), HasSubstr("Twist enters the slice at its ends"));
+  EXPECT_THAT(words_of(seen), HasSubstr("from the ends of the slice to its middle"));
   EXPECT_THAT(words_of(rope), HasSubstr("from end to end"));
 }
 

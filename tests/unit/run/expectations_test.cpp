@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 LogRow row_at(double time, double twist) {
   LogRow row;
   row["time_ps"] = time;
-  row["twist_deg"] = twist;
+  row["geometric_twist_deg"] = twist;
   return row;
 }
 
@@ -42,7 +42,7 @@ std::string refusal_of(const std::string& tables) {
 TEST(Expectations, AreJudgedAtTheirTimeAndAtTheEnd) {
   const std::vector<LogRow> rows = {row_at(0, 0), row_at(2, 10), row_at(4, 12)};
   const auto holds = [&](std::optional<double> at, double value, double tolerance) {
-    return judge({{"twist_deg", at, value, tolerance}}, rows).front().holds;
+    return judge({{"geometric_twist_deg", at, value, tolerance}}, rows).front().holds;
   };
   EXPECT_TRUE(holds({}, 12.4, 0.5));
   EXPECT_FALSE(holds({}, 12.6, 0.5));
@@ -52,16 +52,18 @@ TEST(Expectations, AreJudgedAtTheirTimeAndAtTheEnd) {
   EXPECT_TRUE(holds(4.1, 12, 1)) << "whole steps end a little before";
   EXPECT_FALSE(holds(7, 12, 1)) << "no row is there";
   EXPECT_FALSE(judge({{"tension_upper_nN", {}, 0, 1e12}}, rows).front().holds) << "it has no value";
-  EXPECT_FALSE(judge({{"twist_deg", {}, 0, 1e12}}, std::vector<LogRow>()).front().holds) << "no row at all";
-  const std::vector<Judgement> all = judge({{"twist_deg", {}, 12, 1}, {"twist_deg", 2, 12, 1}}, rows);
+  EXPECT_FALSE(judge({{"geometric_twist_deg", {}, 0, 1e12}}, std::vector<LogRow>()).front().holds)
+      << "no row at all";
+  const std::vector<Judgement> all =
+      judge({{"geometric_twist_deg", {}, 12, 1}, {"geometric_twist_deg", 2, 12, 1}}, rows);
   EXPECT_EQ(missed(all), 1);
-  EXPECT_EQ(all[0].words, "twist_deg is 12 at the end, as expected: 12 ± 1");
-  EXPECT_EQ(all[1].words, "twist_deg is 10 at 2 ps, not as expected: 12 ± 1");
+  EXPECT_EQ(all[0].words, "geometric_twist_deg is 12 at the end, as expected: 12 ± 1");
+  EXPECT_EQ(all[1].words, "geometric_twist_deg is 10 at 2 ps, not as expected: 12 ± 1");
 }
 
 TEST(Expectations, AreReadFromAScene) {
   const Scene scene = scene_with(
-      "[[expect]]\ncolumn = \"twist_deg\"\nvalue = -5\ntolerance_percent = 2\n[[expect]]\ncolumn = "
+      "[[expect]]\ncolumn = \"geometric_twist_deg\"\nvalue = -5\ntolerance_percent = 2\n[[expect]]\ncolumn = "
       "\"time_ps\"\nvalue = 4\ntolerance = 0.1\nat_ps = 3\n");
   ASSERT_EQ(scene.expected.size(), 2u);
   EXPECT_DOUBLE_EQ(scene.expected[0].tolerance, 0.1);
@@ -70,13 +72,13 @@ TEST(Expectations, AreReadFromAScene) {
 }
 
 TEST(Expectations, ThatCannotBeJudgedAreRefused) {
-  const std::string one = "[[expect]]\ncolumn = \"twist_deg\"\nvalue = 5\n";
+  const std::string one = "[[expect]]\ncolumn = \"geometric_twist_deg\"\nvalue = 5\n";
   EXPECT_THAT(refusal_of(one), HasSubstr("tolerance: is missing"));
   EXPECT_THAT(refusal_of(one + "tolerance = 1\ntolerance_percent = 1\n"), HasSubstr("are both given"));
   EXPECT_THAT(refusal_of(one + "tolerance = 0\n"), HasSubstr("tolerance"));
-  EXPECT_THAT(refusal_of("[[expect]]\ncolumn = \"twist_deg\"\nvalue = 0\ntolerance_percent = 1\n"),
+  EXPECT_THAT(refusal_of("[[expect]]\ncolumn = \"geometric_twist_deg\"\nvalue = 0\ntolerance_percent = 1\n"),
               HasSubstr("that is 0"));
-  EXPECT_THAT(refusal_of("[[expect]]\ncolumn = \"twist\"\nvalue = 1\ntolerance = 1\n"), HasSubstr("twist_deg"));
+  EXPECT_THAT(refusal_of("[[expect]]\ncolumn = \"twist\"\nvalue = 1\ntolerance = 1\n"), HasSubstr("has no column"));
   EXPECT_THAT(refusal_of(one + "tolerance = 1\nat_ps = 9\n"), HasSubstr("the run ends at 4 ps"));
   EXPECT_EQ(refusal_of(one + "tolerance = 1\nat_ps = 4\n"), "taken");
 }
