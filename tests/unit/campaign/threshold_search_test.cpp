@@ -43,7 +43,7 @@ TEST_F(ThresholdSearches, TakesManyTrials) {
   constexpr int own = 20000, foreign = 30000;
   std::string table = key_cells(sweep, sweep.keys()) + column_names(trial_columns()) + "\n";
   const auto row = [&](const SweepPoint& p, double value, bool passed, const std::string& hash) {
-    table += key_cells(sweep, p.values) + fmt::format("1,{:.6g},{},{},nan,nan,0,straight,{}\n", value,
+    table += key_cells(sweep, p.values) + fmt::format("1,{:.6g},{},{},nan,nan,0,straight,,nan,{}\n", value,
                                                       passed ? 1 : 0, passed ? "3" : "nan", hash);
   };
   const TrialHashes hashes(sweep, points.back());
