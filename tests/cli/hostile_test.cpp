@@ -96,7 +96,7 @@ const std::vector<Hostile> scenes = {
     {"TwistedUntilABondSlips",
      std::string(chain) + "[bond]\nlaw = \"harmonic\"\n[twist]\nmoment_nN_nm = 200\nrate_nN_nm_per_ps = 0\nhold_ps "
                           "= 5\n[run]\ntime_step_fs = 36.7\n",
-     3, "about to slip"},
+     3, "cannot carry more torque"},
     {"TwistedAtOnce",
      std::string(rope) +
          "[bond]\nlaw = \"harmonic\"\n[twist]\napplication = \"tangential\"\nmoment_nN_nm = 2000\n"
