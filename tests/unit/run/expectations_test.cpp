@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
@@ -18,6 +20,7 @@ LogRow row_at(double time, double twist) {
   LogRow row;
   row["time_ps"] = time;
   row["geometric_twist_deg"] = twist;
+  row["tension_upper_nN"] = std::nan("");
   return row;
 }
 
