@@ -140,7 +140,7 @@ FUNCTION double slope_at_edge(GLOBAL const Anharmonic* h) {
   return 6 * h->max_strain * (h->e3 + 2 * h->e4 * h->max_strain);
 }
 
-// What the law of stretch adds, beyond the window, to EA/2 e^2 and to strain_energy().
+// The law of stretch beyond the window: its part besides EA/2 e^2 and strain_energy().
 FUNCTION StretchEnergy stretch_beyond(GLOBAL const Anharmonic* h, double EA, double strain) {
   const double beyond = larger(strain - h->max_strain, 0.0), step = h->pull_step;
   StretchEnergy out;

@@ -10,7 +10,7 @@
 //   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers]
 //   }
 //               (nN), of a tube that is pulled and not twisted, at equal steps of strain from max_strain to end;
-//               end (strain), the last that the atoms bear or that their potential describes
+//               end: largest strain that the atoms bear and that their potential describes
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
 //   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and

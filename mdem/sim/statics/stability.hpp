@@ -15,8 +15,8 @@ struct Stability {
   bool stable() const { return growth <= neutral; }
 };
 
-// None, and `why` in words: constraints tie several elements, a term has no tangent, the decomposition would take
-// more than `most_bytes`, or no eigenvalue was found.
+// Returns nothing, and the reason in `why`, where constraints tie several elements, a term has no tangent, the
+// decomposition would take more than `most_bytes`, or no eigenvalue was found.
 std::optional<Stability> stability_of(const Simulation& simulation, double most_bytes, std::string& why);
 
 }  // namespace ropewalk
