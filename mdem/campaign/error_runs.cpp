@@ -146,7 +146,7 @@ class InputsOf {
     if (!none.empty()) out_.without_error.push_back(fmt::format("{} of {}", none, set.name));
   }
 
-  // Of pairs of unlike tubes, which have no registry.
+  // The contact of pairs of unlike tubes, which have no registry.
   void add_unlike_contact() {
     const Quantity* fit = find_quantity(scene_.sets.front(), "contact.line.universal.error");
     if (!fit || !(fit->value > 0)) return;

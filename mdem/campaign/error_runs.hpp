@@ -21,7 +21,7 @@ struct VariedNumber {
   std::string log_path = {};
 };
 
-// What is behind the errors of a run, and what is not.
+// The numbers that the errors of a run come from, and those that are left out.
 struct ErrorInputs {
   std::vector<VariedNumber> varied;
   std::vector<std::string> without_error;  // "failure.strain = 0.16", numbers of which no error is stated

@@ -81,7 +81,7 @@ std::string law_words(const Series& s) {
                                     : fmt::format("{:.2f}, of two points alone", law->exponent));
 }
 
-// In words: those of an observable of this name, or those of the key, without its unit.
+// The title of a column or key: the words of the observable of this name, else the key without its unit.
 ChartAxis axis_of_key(const std::string& key) {
   const std::string leaf = leaf_of(key);
   for (const Observable& o : observables())

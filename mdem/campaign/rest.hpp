@@ -55,7 +55,7 @@ struct RestVerdict {
 RestVerdict rest_verdict(const std::array<RestSide, 2>& sides, double tolerance);
 const char* name_of(RestVerdict::Kind kind);
 
-// What the errors of a verdict leave out, in words.
+// A sentence: sources of error that a verdict leaves out.
 std::string left_out_of_rest();
 
 // A row for each side, and what the verdict says.

@@ -42,7 +42,7 @@ std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   return groups;
 }
 
-// Of the run that passed a limit first.
+// The limits of the run that passed one first.
 std::vector<LimitRecord> earliest_limits(const std::vector<RunDirectory>& runs) {
   std::vector<LimitRecord> earliest;
   for (const RunDirectory& run : runs) {

@@ -108,7 +108,7 @@ bool has_influence(const ResultError& error, const std::vector<LogRow>& log, con
   for (const LogRow& row : log)
     if (const double v = value(row); std::isfinite(v)) largest = std::max(largest, std::fabs(v));
   if (!std::isfinite(error.error) || !(error.error > rounding * largest)) return false;
-  // What is zero by symmetry follows no parameter: it is noise, and moves by as much.
+  // A value that symmetry makes zero depends on no parameter: it is noise, and varies by its own size.
   return error.linear || (error.error > noise * largest && error.error > movement(log, value));
 }
 

@@ -1,4 +1,4 @@
-// What came of a run, in numbers that the prompt, the report and all tables share.
+// The results of a run as numbers, which the prompt, the report and all tables share.
 #pragma once
 
 #include <functional>

@@ -299,7 +299,7 @@ FUNCTION BondAction window_bond(GLOBAL const BondStiffness* k, double share, dou
   return out;
 }
 
-// What the law of stretch adds beyond the window; nothing within it.
+// Force and energy that the pull adds to the bond beyond the window; zero within it.
 FUNCTION BondAction bond_beyond(GLOBAL const BondStiffness* k, double a, Vec separation, BodyFrame i, BodyFrame j) {
   const double length = sqrt(vec_norm2(separation)), arc = 1.0 + vec_norm2(vec_difference(i.t, j.t)) * (0.5 / 12);
   const StretchEnergy more = stretch_beyond(&k->anharmonic, k->stretch, arc_strain(a, length, i, j));

@@ -7,8 +7,8 @@
 //
 //   y0 = y4 - (y3 - y4) q/(1 - q)
 //
-// The error that is stated for this step is its whole size. Seven tubes that creep under a couple, at viscosities
-// of 20, 50 and 100, lie 0.1 to 0.5 of that error from their rest (docs/theory.md).
+// The stated error is |y0 - y4|. Estimates for seven tubes that creep under a couple, at viscosities of 20, 50 and
+// 100, are 0.1 to 0.5 of this error away from the true rest (docs/theory.md).
 #pragma once
 
 #include <cmath>
