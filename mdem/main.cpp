@@ -18,7 +18,7 @@
 #include "commands/limit_help.hpp"
 #include "commands/siblings.hpp"
 #include "io/data_files.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "io/toml_table.hpp"
@@ -667,7 +667,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ropewalk: %s\n", usage_error(app, e, "ropewalk").c_str());
     return 2;
   } catch (const std::exception& e) {
-    return tell_failure("ropewalk", e);
+    return report_error("ropewalk", e);
   }
   return code_at_exit("ropewalk", verbs.code);
 }

@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "campaign/campaign.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "run/begin_run.hpp"
@@ -75,7 +75,7 @@ int in_a_process(const std::string& messages, bool wait, const std::function<int
     setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
     return work();
   } catch (const std::exception& e) {
-    return tell_failure("ropewalk", e);
+    return report_error("ropewalk", e);
   }
 }
 

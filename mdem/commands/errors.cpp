@@ -10,7 +10,7 @@
 
 #include "campaign/error_runs.hpp"
 #include "commands/commands.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
@@ -106,7 +106,7 @@ int errors_command(const ErrorsArguments& a) {
                            if (!std::freopen("/dev/null", "w", stdout)) return 3;
                            return runs.run(source, plus);
                          } catch (const std::exception& e) {
-                           return tell_failure(fmt::format("ropewalk errors: {}", name).c_str(), e);
+                           return report_error(fmt::format("ropewalk errors: {}", name).c_str(), e);
                          }
                        },
                        [&failed, name](int status) {

@@ -12,7 +12,7 @@
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
 #include "io/clocks.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -29,7 +29,7 @@ constexpr std::size_t most_built = 20;  // scenes of points, where a script is w
 int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<SweepPoint>& points, int jobs) {
   const std::vector<double> seconds =
       seconds_of_points(sweep, points, [](const SweepPoint& p, const std::exception& e) {
-        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", p.name, failure_words(e)));
+        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", p.name, error_words(e)));
       });
   double total = 0;
   fmt::print("{:>5}  {:<50} {:>10}\n", "", "point", "time");

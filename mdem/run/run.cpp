@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "run/dynamics_loop.hpp"
@@ -42,7 +42,7 @@ void Run::write_end(const char* status, const std::string& reason) {
     parts_.files.write_report(report_of(dir, parts_.moving.scene, parts_.moving.prepared));
   } catch (const std::exception& e) {
     parts_.listener.tell(
-        fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir.path));
+        fmt::format("no report: {}; make it with: ropewalk report {}", error_words(e), dir.path));
   }
   parts_.files.try_again();
 }
@@ -170,7 +170,7 @@ RunResult Run::failed(const NumericalError& e) {
 
 // The last good state is saved if that is still possible.
 RunResult Run::broken_off(const std::exception& e) {
-  const std::string why = failure_words(e);
+  const std::string why = error_words(e);
   std::exception_ptr error = std::current_exception();
   try {
     parts_.checkpoints.save_snapshot();
