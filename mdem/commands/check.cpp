@@ -12,7 +12,7 @@
 #include "run/moving_scene.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"

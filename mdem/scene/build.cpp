@@ -11,7 +11,7 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/packing.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"

@@ -410,7 +410,7 @@ std::vector<Schedule::Point> in_time(const TomlTable& t, const Course& d) {
   return points;
 }
 
-GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) {
+GripAxis read_axis(const TomlTable& t, const std::string& axis, bool rotation) {
   std::string names;
   const Course* found = nullptr;
   for (const Course& d : courses) {
@@ -467,7 +467,7 @@ KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std:
           return;
         }
         const Course& example = courses[axis < 3 ? 0 : 4];
-        grip.axes[axis] = read_drive(t.table(name, example_of(example)), name, axis >= 3);
+        grip.axes[axis] = read_axis(t.table(name, example_of(example)), name, axis >= 3);
       });
 }
 

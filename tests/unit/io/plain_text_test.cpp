@@ -14,7 +14,7 @@
 #include "io/csv_reader.hpp"
 #include "io/error_exit.hpp"
 #include "model/error.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 
 namespace ropewalk {
 namespace {
