@@ -47,6 +47,8 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   start.time_step = s.time_step();
   start.work = s.work();
   start.dissipated = s.dissipated();
+  start.heat = s.heat();
+  start.lineage = scene.lineage;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
   const RunDirectory here{"."};
@@ -136,6 +138,7 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.time = s.state().time;
   header.work = s.work();
   header.dissipated = s.dissipated();
+  header.heat = s.heat();
   write_file_atomically(dir.first_state(),
                         state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));

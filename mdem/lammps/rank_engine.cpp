@@ -201,6 +201,14 @@ void RankEngine::move(double dt) {
   }
 }
 
+// Copies change as well; their owners send them before they are read.
+void RankEngine::exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time) {
+  state_.step = step;
+  state_.time = time;
+  std::vector<double> none;
+  bath.apply(topology_, dt, state_, none);
+}
+
 double RankEngine::kinetic_energy() const {
   double sum = 0;
   for (const Segment& of : moved_)

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* start_format = "ropewalk-lammps-1";
+constexpr const char* start_format = "ropewalk-lammps-2";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
@@ -30,6 +30,8 @@ void visit_start(S&& s, const Visit& v) {
   v({"time_step_ps", "ps", "time step"}, s.time_step);
   v({"work_eV", "eV", "work done by the loads so far"}, s.work);
   v({"dissipated_eV", "eV", "energy taken out by damping so far"}, s.dissipated);
+  v({"heat_eV", "eV", "energy brought in by the thermostat so far"}, s.heat);
+  v({"lineage", "", "key of the random numbers: another one for a scene that goes on from a state"}, s.lineage);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
@@ -71,6 +73,7 @@ constexpr std::array<OutputColumn, 1 + lammps_row_numbers> row_columns = {{
     {"kinetic_eV", "eV", "kinetic energy of translation and rotation"},
     {"work_eV", "eV", "work done by the loads since the start"},
     {"dissipated_eV", "eV", "energy taken out by damping since the start"},
+    {"heat_eV", "eV", "energy brought in by the thermostat since the start"},
 }};
 
 constexpr double most_steps = 1e15;
@@ -94,6 +97,8 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   std::string lacking = scene.source->not_for_lammps();
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
+  if (lacking.empty() && scene.thermostat() && scene.contact.law == "none")
+    lacking = "thermostat (without contact)";
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
   if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
   if (!lacking.empty())
@@ -123,8 +128,8 @@ LammpsStart read_start(const LammpsDirectory& dir) {
   } catch (const Json::exception&) {
     throw InputError({path, 0, ""}, "is damaged", export_again);
   }
-  for (const double value :
-       {start.time, start.time_step, start.work, start.dissipated, start.viscosity_inner, start.viscosity_outer})
+  for (const double value : {start.time, start.time_step, start.work, start.dissipated, start.heat,
+                             start.viscosity_inner, start.viscosity_outer})
     if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", export_again);
   for (const std::string& name : start.parameters)
     if (has_control_character(name) || name.find('/') != std::string::npos)
@@ -168,8 +173,8 @@ constexpr std::array<const char*, 4> of_a_term = {"term", "lost", "drag", "event
 
 // Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
-  std::vector<std::string> names = {"time", "stretch", "shear", "bend",      "twist",
-                                    "vdw",  "kinetic", "work",  "dissipated"};
+  std::vector<std::string> names = {"time", "stretch", "shear", "bend",       "twist",
+                                    "vdw",  "kinetic", "work",  "dissipated", "heat"};
   for (int k = 1; k <= terms; ++k)
     for (const char* number : of_a_term) names.push_back(fmt::format("{}{}", number, k));
   return names;
@@ -270,8 +275,8 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     r.terms.resize(terms);
     r.accounts.resize(terms);
     std::size_t column = 0;
-    std::vector<double*> values = {&r.step,  &r.time, &r.stretch, &r.shear, &r.bend,
-                                   &r.twist, &r.vdw,  &r.kinetic, &r.work,  &r.dissipated};
+    std::vector<double*> values = {&r.step, &r.time,    &r.stretch, &r.shear,      &r.bend, &r.twist,
+                                   &r.vdw,  &r.kinetic, &r.work,    &r.dissipated, &r.heat};
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});

@@ -59,6 +59,13 @@ const std::vector<Protocol>& protocols() {
        1e-9},
       {"LegacyTorque",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
+      // A bath that warms, with clamps whose constrained components it must leave alone.
+      {"Thermostat",
+       "[[grip]]\nend = \"lower\"\nas = \"each\"\n[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\n"
+       "about_z = { torque_nN_nm = 30 }\n[start]\ntemperature_K = 200\n"
+       "[thermostat]\ntemperature_K = [[0, 200], [2, 300]]\ncoupling_per_ps = 2\nseed = 5\n"
+       "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n",
+       1e-9},
       {"NoContact",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
        "[[load]]\nkind = \"fix\"\nelements = [0]\n"}};
@@ -100,7 +107,9 @@ TEST_F(ProtocolTest, HundredStepsAgree) {
       const LammpsRow row = read_lammps_rows(LammpsDirectory{out}).back();
       EXPECT_NEAR(row.work, native.work(), p.tolerance * std::fmax(1, native.work()));
       EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
+      EXPECT_NEAR(row.heat, native.heat(), p.tolerance * std::fmax(1, native.heat()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
+      if (p.name == std::string("Thermostat")) EXPECT_GT(native.heat(), 1);
     }
   }
 }
@@ -298,6 +307,7 @@ void expect_same_run(const Left& whole, const Left& left, double tolerance) {
 void expect_same_account(const LammpsRow& whole, const LammpsRow& again) {
   EXPECT_NEAR(again.work, whole.work, 1e-12 * whole.work);
   EXPECT_NEAR(again.dissipated, whole.dissipated, 1e-12 * whole.dissipated);
+  EXPECT_NEAR(again.heat, whole.heat, 1e-12 * std::fabs(whole.heat));
 }
 
 // On the same number of ranks the resumed run has the bits of an uninterrupted one. The skin of the neighbour list
@@ -426,9 +436,10 @@ TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
 // --- there and back -----------------------------------------------------------------------------------
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {
-  const std::string scene =
-      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\nmay_cool = true\n",
-           "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
+  const std::string scene = rope(
+      "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\nmay_cool = true\n"
+      "[thermostat]\ntemperature_K = 200\ncoupling_per_ps = 0.5\n",
+      "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
   spit(dir / "scene.toml", scene);
   ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
   // Two ps here, two on LAMMPS, two here again.
