@@ -49,6 +49,10 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   start.dissipated = s.dissipated();
   start.heat = s.heat();
   start.lineage = scene.lineage;
+  const TubeGroups& groups = s.topology().groups;
+  if (!groups.strand_begin.empty())
+    start.strand_begin.assign(groups.strand_begin.begin(), groups.strand_begin.end() - 1);
+  start.strand_holes = groups.strand_holes;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
   const RunDirectory here{"."};

@@ -22,6 +22,8 @@ LammpsModel load_lammps_model(const std::string& directory) {
   refuse_what_lammps_lacks(scene);
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
+  set_strands(dir, m.start, m.topology);
+  m.topology.groups.ends_meet = ends_meet(scene, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
   add_terms(scene, m.topology, State(static_cast<std::size_t>(m.topology.elements())), m.interaction);

@@ -278,7 +278,10 @@ void RankEngine::build() {
     own.push_back(owned);
   }
   topology_ = part_of_scene(model_->topology, std::move(number), std::move(own));
-  if (!ranks_) topology_.part.reset();  // it is the scene
+  if (!ranks_) {  // it is the scene
+    topology_.part.reset();
+    topology_.groups = model_->topology.groups;
+  }
   find_moved();
   if (state_.size() != order.size()) {
     state_ = State(order.size());

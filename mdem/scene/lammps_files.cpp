@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <type_traits>
@@ -32,6 +34,10 @@ void visit_start(S&& s, const Visit& v) {
   v({"dissipated_eV", "eV", "energy taken out by damping so far"}, s.dissipated);
   v({"heat_eV", "eV", "energy brought in by the thermostat so far"}, s.heat);
   v({"lineage", "", "key of the random numbers: another one for a scene that goes on from a state"}, s.lineage);
+  v({"strands_begin_with_tubes", "", "the first tube of each strand; empty: each tube is a strand"},
+    s.strand_begin);
+  v({"strand_holes_nm", "nm", "between the tubes of a strand at the start: their sum, of the strand with most"},
+    s.strand_holes);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
@@ -129,7 +135,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     throw InputError({path, 0, ""}, "is damaged", export_again);
   }
   for (const double value : {start.time, start.time_step, start.work, start.dissipated, start.heat,
-                             start.viscosity_inner, start.viscosity_outer})
+                             start.strand_holes, start.viscosity_inner, start.viscosity_outer})
     if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", export_again);
   for (const std::string& name : start.parameters)
     if (has_control_character(name) || name.find('/') != std::string::npos)
@@ -165,6 +171,18 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
     for (int t = 0; t < tubes; ++t) topology.add_tube(elements, type);
   });
   if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", export_again);
+}
+
+void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology) {
+  std::vector<int> begin = start.strand_begin;
+  if (begin.empty()) return;
+  begin.push_back(topology.tubes());
+  const bool rise = std::adjacent_find(begin.begin(), begin.end(), std::greater_equal<>()) == begin.end();
+  if (begin.front() != 0 || !rise)
+    throw InputError({dir.start(), 0, "strands_begin_with_tubes"}, "does not fit the tubes of this export",
+                     export_again);
+  topology.groups.strand_begin = std::move(begin);
+  topology.groups.strand_holes = start.strand_holes;
 }
 
 namespace {

@@ -25,6 +25,8 @@ struct LammpsStart {
   double time_step = 0;                             // ps
   double work = 0, dissipated = 0, heat = 0;        // eV
   std::uint64_t lineage = 0;                        // Scene::lineage
+  std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
+  double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   std::vector<std::string> parameters;              // files, of each tube type
 };
@@ -57,6 +59,8 @@ LammpsStart read_start(const LammpsDirectory& dir);
 std::string tubes_csv(const Topology& topology);
 // Adds the tubes to a topology that has its types. Throws InputError.
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
+// Sets the strands of these tubes. Throws InputError where they do not fit the tubes.
+void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology);
 
 // The facts that the input script needs.
 struct LammpsScript {

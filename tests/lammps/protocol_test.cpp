@@ -164,6 +164,27 @@ TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
   expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, 1e-10);
 }
 
+// Tubes that end inside of a rope, in line, under a bath: ends meet within a rank and across ranks.
+TEST_F(LammpsRun, FiniteTubesMeetAsHere) {
+  const std::string scene_text =
+      line_scene("double", "[rope]\ntubes = 7\nlength_nm = 60\ntube_length_nm = 15\nperturbation_nm = 0.01\n",
+                 "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { force_nN = 1 }\n"
+                 "[start]\ntemperature_K = 300\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n"
+                 "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n");
+  expect_equal_steps(scene_text, 200, 1e-9);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.steps(200);
+  const double energy = native.forces().term_energy.at(0);
+  EXPECT_LT(energy, -0.1);
+  for (const int n : {1, 2, 4}) {
+    const std::string out = (dir / ("out-" + std::to_string(n))).string();
+    EXPECT_NEAR(read_lammps_rows(LammpsDirectory{out}, 1).back().terms.at(0), energy, 1e-7 * -energy) << n;
+  }
+  ASSERT_EQ(run("import out-2").code, 0);
+  EXPECT_NEAR(read_log((dir / "out-2/log.csv").string()).back()["ends_eV"], energy, 1e-7 * -energy);
+}
+
 // Tethers within a rank and across ranks, one of which breaks on the way; then a run that goes on remembers it.
 TEST_F(LammpsRun, TethersHoldAndBreakAsHere) {
   const std::string

@@ -20,11 +20,9 @@ SceneKind state_kind() {
        {}});
 }
 
-// LAMMPS gets tubes without their strands, and loads would hold the ends inside.
 std::string StateSource::not_for_lammps() const {
   if (!std::filesystem::exists(path_)) return "";
-  if (!read_state_notes(path_).broken.empty()) return "state.file with broken tubes";
-  return state_has_strands(path_) ? "state.file with strands" : "";
+  return read_state_notes(path_).broken.empty() ? "" : "state.file with broken tubes";
 }
 
 void StateSource::place(const Scene&, double, Random&, Topology& topology, State& state) const {

@@ -175,7 +175,8 @@ TEST_F(LammpsFiles, RowsThatLammpsDoesNotWriteAreRefused) {
   }
   spit(dir.start(),
        "{\"format\": \"ropewalk-lammps-2\", \"step\": 1, \"time_ps\": 0, \"time_step_ps\": 1, \"work_eV\": 0, "
-       "\"dissipated_eV\": 0, \"heat_eV\": 0, \"lineage\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": "
+       "\"dissipated_eV\": 0, \"heat_eV\": 0, \"lineage\": 0, \"strands_begin_with_tubes\": [], "
+       "\"strand_holes_nm\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": "
        "0, \"parameters\": "
        "[\"../other.toml\"]}");
   EXPECT_THROW(read_start(dir), InputError);
