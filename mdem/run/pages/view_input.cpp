@@ -73,6 +73,8 @@ ViewInput view_input(const RunDirectory& dir, const Scene& scene, const Prepared
     if (r.passed && r.passed_tube >= 0)
       in.marks.push_back(
           {r.key, r.passed_held_by, r.passed_at_ps, p.topology.tube_begin[r.passed_tube] + r.passed_element});
+  std::stable_sort(in.marks.begin(), in.marks.end(),
+                   [](const ViewMark& a, const ViewMark& b) { return a.time_ps < b.time_ps; });
   const std::vector<RopeView> ends = {view_of(events, frames.front(), none), view_of(events, frames.back(), none)};
   const double radius = p.topology.largest_radius();
   const bool film = p.topology.tubes() > 1 && !is_rope(p, make_observer(scene, p));  // lies flat
