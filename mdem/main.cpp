@@ -17,6 +17,7 @@
 #include "commands/commands.hpp"
 #include "commands/limit_help.hpp"
 #include "commands/siblings.hpp"
+#include "commands/table_help.hpp"
 #include "io/data_files.hpp"
 #include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
@@ -25,6 +26,7 @@
 #include "model/error.hpp"
 #include "observe/limits.hpp"
 #include "run/cores.hpp"
+#include "run/pages/colour_fields.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
@@ -113,6 +115,14 @@ void add_device(CLI::App* c, std::string& name, const std::string& by_default) {
                     by_default + "]");
 }
 
+CLI::Option* add_colour(CLI::App* c, std::string& colour, const char* what) {
+  return c
+      ->add_option("--colour", colour,
+                   fmt::format("{} are coloured by: {} [default: moment, where frames have it]", what,
+                               fmt::join(colour_words(), ", ")))
+      ->check(CLI::IsMember(colour_words()));
+}
+
 CLI::Validator thread_range() { return whole_number(1, 1024); }
 
 void add_new(CLI::App& app, Verbs& v) {
@@ -146,6 +156,10 @@ void add_run(CLI::App& app, Verbs& v) {
   add_instructions(c, v.run.instructions, "the calculation, for the same bits on other processors",
                    instruction_sets().front());
   add_device(c, v.run.device, "none");
+  c->add_option(
+      "--slurm", v.run.slurm,
+      "Only write a SLURM job to this file that runs the scene in pieces of --wall-time, and submits itself "
+      "until the run is done");
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
   c->callback([&v] {
@@ -188,12 +202,12 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
-  c->add_flag("--tensile", v.compare.tensile,
-              "Runs that pull a rope: strength, modulus, toughness and breaks, over what --x was before the pull");
+  c->add_flag(
+      "--tensile", v.compare.tensile,
+      "Runs that pull a rope: strength, modulus, toughness and breaks, against the value of --x before the pull");
   c->add_flag("--torsion", v.compare.torsion,
-              "Runs that twist a rope: largest torque, its angle, first break and stored energy, over what --x was "
-              "at that "
-              "torque")
+              "Runs that twist a rope: largest torque, its angle, first break and stored energy, against the value "
+              "of --x at that torque")
       ->excludes("--tensile");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
@@ -269,6 +283,7 @@ void add_picture(CLI::App& app, Verbs& v) {
       ->delimiter(',');
   c->add_option("--x", v.picture.x,
                 "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");
+  add_colour(c, v.picture.colour, "Tubes");
   c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
   c->add_option("--width", v.picture.width, "Width of the figure, pixels")
       ->capture_default_str()
@@ -301,6 +316,7 @@ void add_view(CLI::App& app, Verbs& v) {
                 "Movie, seen from: side (the largest deflection in the picture), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str()
       ->needs(movie);
+  add_colour(c, v.view.colour, "Movie: tubes")->needs(movie);
   c->add_option("--fps", v.view.fps, "Movie: frames per second")
       ->capture_default_str()
       ->check(number_within(Bounds::range(0.1, 120.0)))
@@ -348,7 +364,7 @@ void add_sweep(CLI::App& app, Verbs& v) {
       app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
   c->add_option("file", v.sweep.file, "Sweep (TOML): scene = \"rope.toml\", then [vary] with rope.tubes = [7, 19]")
       ->required();
-  c->add_option("--out", v.sweep.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("--out", v.sweep.out, "Directory of the campaign, where the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.sweep.jobs, "Runs at a time, each on one core [default: all cores]")
       ->check(thread_range());
   c->add_flag("--dry-run", v.sweep.dry_run, "Only list the points and what they cost");
@@ -371,7 +387,8 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("file", v.threshold.file,
                 "Sweep (TOML) with [threshold]: key, from, to, and column and above, or shape")
       ->required();
-  c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("--out", v.threshold.out,
+                "Directory of the campaign, where the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
       ->check(thread_range());
   c->add_option("--known", v.threshold.known,
@@ -395,7 +412,8 @@ void add_rest(CLI::App& app, Verbs& v) {
   c->add_option("--viscosity", v.rest.viscosity,
                 "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
       ->check(CLI::NonNegativeNumber);
-  c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides are at rest and agree")
+  c->add_option("--tolerance", v.rest.tolerance,
+                "Both sides count as at rest, and as equal, within this part of the twist")
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());
@@ -415,7 +433,8 @@ void add_modes(CLI::App& app, Verbs& v) {
   c->add_option("--count", v.modes.count, "Eigenvalues to find")
       ->capture_default_str()
       ->check(whole_number(1, 200));
-  c->add_option("--shift", v.modes.shift, "Those nearest to this rate (1/ns), which should be above the largest")
+  c->add_option("--shift", v.modes.shift,
+                "Find the motions with growth rates nearest to this one (1/ns); choose it above the largest rate")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e5));
   c->add_flag("--anyway", v.modes.anyway, "Also for a state that does not rest: its motions as if it stood still");
@@ -544,23 +563,25 @@ void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
   c->add_option("topic", v.help_topic,
                 "A verb; scene; a table of a scene, as links or [run]; one of its keys; or a limit that a run has "
-                "passed [default: "
-                "the list of verbs]");
+                "passed [default: the list of verbs]");
   c->callback([&app, &v] {
     if (v.help_topic == "scene") {
       std::puts(scene_key_help().c_str());
       return;
     }
-    const std::string keys = scene_key_help(v.help_topic), limit = limit_help(v.help_topic);
-    if (!keys.empty() || !limit.empty()) {
-      std::fputs((keys + (keys.empty() || limit.empty() ? "" : "\n") + limit).c_str(), stdout);
+    std::string text;  // one word may be a table, a key and a limit
+    for (const std::string& part :
+         {table_help(v.help_topic), scene_key_help(v.help_topic), limit_help(v.help_topic)})
+      text += (text.empty() || part.empty() ? "" : "\n") + part;
+    if (!text.empty()) {
+      std::fputs(text.c_str(), stdout);
       return;
     }
     std::vector<std::string> topics = listed_verbs(app);
     topics.emplace_back("scene");
     for (const std::string& limit : limit_headings()) topics.push_back(limit);
     for (const SceneTable& t : scene_tables()) {
-      if (!t.name.empty()) topics.push_back(t.name);
+      topics.push_back(t.name.empty() ? "top" : t.name);
       for (const SceneKey& k : t.keys) topics.push_back(k.key);
     }
     const std::string near = nearest_word(v.help_topic, topics);
@@ -579,7 +600,10 @@ nlohmann::ordered_json scenes_and_limits() {
                       {"unit", k.unit},
                       {"standard", k.standard.empty() ? k.value : k.standard},
                       {"meaning", k.meaning}});
-    scene.push_back({{"table", t.name.empty() ? "" : t.header()}, {"meaning", t.meaning}, {"keys", keys}});
+    auto parts = nlohmann::ordered_json::array();
+    for (const TablePart& part : table_parts(t)) parts.push_back({{"heading", part.heading}, {"text", part.text}});
+    scene.push_back(
+        {{"table", t.name.empty() ? "" : t.header()}, {"meaning", t.meaning}, {"keys", keys}, {"parts", parts}});
   }
   for (const LimitKind& kind : limit_kinds())
     limits.push_back({{"key", kind.key},
@@ -587,7 +611,7 @@ nlohmann::ordered_json scenes_and_limits() {
                       {"what", kind.what},
                       {"consequence", kind.consequence},
                       {"remedy", kind.remedy}});
-  return {{"scene", scene}, {"limits", limits}};
+  return {{"scene", scene}, {"described_tables", described_tables()}, {"limits", limits}};
 }
 
 Description description() {

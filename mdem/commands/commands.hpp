@@ -21,6 +21,7 @@ struct RunArguments {
   std::string wall_time;          // see seconds_of_wall_time(); empty: any
   std::string instructions;       // empty: the machine's best
   std::string device;             // see RunSettings
+  std::string slurm;              // write a job of SLURM to this file instead; empty: run
   bool force = false;             // overwrite an earlier run
   bool quiet = false;
 };
@@ -72,6 +73,7 @@ struct PictureArguments {
   std::string from = "side";        // or "x", "y", "z", "AZIMUTH,ELEVATION"
   std::vector<std::string> curves;  // "twist_eV+bend_eV" is one chart
   std::string x;                    // column over which they are drawn; empty: time
+  std::string colour;               // a word of colour_words(); empty: bending moment
   bool sections = false;
   double width = 1040, highest = 200;  // pixels, of the figure and of each state
   double zoom = 2;                     // of a PNG
@@ -86,6 +88,7 @@ struct ViewArguments {
   double megabytes = 15;      // of the page, at most
   std::string movie;          // .webm or .mp4 to write instead
   std::string from = "side";  // of the movie: as of PictureArguments
+  std::string colour;         // of the movie: as of PictureArguments
   double fps = 15;            // of the movie
   int width = 1280;           // pixels, of the movie
   bool force = false;

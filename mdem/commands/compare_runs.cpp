@@ -74,15 +74,24 @@ std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string
 }
 
 void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& with_others) {
-  if (!a.y.empty() || !a.levels.empty() || a.log)
+  if (!a.y.empty() || a.log)
     throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
                      a.torsion ? "draws the largest torque alone" : "draws strength alone",
-                     "leave out --y, --level and --log");
-  const LoadTestKind& kind = a.torsion ? torsion_kind() : tensile_kind();
+                     "leave out --y and --log");
+  LoadTestKind kind = a.torsion ? torsion_kind() : tensile_kind();
+  for (const std::string& text : a.levels) {
+    const ReferenceLevel level = level_of(text);
+    kind.levels.emplace_back(level.value, level.name);
+  }
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
+  if (!a.svg.empty() && tests.size() == 1)
+    throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
+                     "has one point, and a figure needs two or more",
+                     a.torsion ? "draw the curve of the run: --x rotation_deg --y torque_upper_nN_nm"
+                               : "draw the curve of the run: --x ends_strain --y stress_GPa");
   if (!a.svg.empty()) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
   if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
   if (wanted.page.empty()) return;

@@ -103,7 +103,7 @@ constexpr const char* readme =
     "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
-// `run` divides steps with which its account of energy does not close, and LAMMPS keeps them.
+// `run` divides steps with which its energy balance does not close, and LAMMPS keeps them.
 void tell_of_long_steps(const Simulation& from, RunListener& listener) {
   const auto closes = [&](int parts) {
     Simulation trial = from;
@@ -121,7 +121,7 @@ void tell_of_long_steps(const Simulation& from, RunListener& listener) {
   if (parts == 1) return;
   const double step = from.time_step() / units::fs;
   listener.tell(
-      fmt::format("note: with steps of {:.4g} fs the account of energy does not close in the first {} of them, and "
+      fmt::format("note: with steps of {:.4g} fs the energy balance does not close in the first {} of them, and "
                   "LAMMPS cannot divide them as `run` does: {}",
                   step, StepControl::window,
                   closes(parts) ? fmt::format("set run.time_step_fs = {:.4g} and export again", step / parts)

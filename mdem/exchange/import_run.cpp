@@ -119,7 +119,7 @@ class Import {
       listener_.tell(line);
   }
 
-  // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
+  // Judges the energy balance as the step control of `run` does, over a window of at least the same length.
   void check_account(const EnergyAccount& account, std::int64_t step) {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
     const EnergyMark now{account.potential.potential() + account.kinetic,
@@ -128,7 +128,7 @@ class Import {
                                        account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
-          "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
+          "note: from step {} to {} the energy balance does not close. `run` would have gone back and divided "
           "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
           "again",
           marked_at_, step, prepared_.time_step / units::fs));

@@ -129,8 +129,8 @@ std::string plate_svg(const PlateInput& input) {
     }
     y += tag_height + row + gap;
   }
-  if (in.camera.moment_eV > 0) {
-    const std::string bar = moment_bar(in.camera.moment_eV);
+  if (in.camera.coloured()) {
+    const std::string bar = colour_bar(in.camera);
     body += placed(bar, margin, y);
     y += height_of(bar) + gap;
   }

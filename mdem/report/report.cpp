@@ -241,8 +241,8 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
   html += "</div>\n";
   if (std::any_of(views.begin(), views.end(), [](const RopeView& v) { return !v.links.empty(); }))
     caption += " Red: links, where they can be seen.";
-  if (camera.moment_eV > 0) {
-    html += moment_bar(camera.moment_eV);
+  if (camera.coloured()) {
+    html += colour_bar(camera);
     caption +=
         " Colour: modulus of the bending moment of the tube; the scale ends where 99.5 % of the elements lie "
         "below.";

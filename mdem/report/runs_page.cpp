@@ -92,7 +92,7 @@ std::string pictures(const std::vector<RunCurve>& runs, Figures& figures) {
     ++k;
   }
   html += "</div>\n";
-  if (camera.moment_eV > 0) html += moment_bar(camera.moment_eV);
+  if (camera.coloured()) html += colour_bar(camera);
   return html +
          figures.caption(
              fmt::format("All at the same scale; the bar is {:g} nm long. Colour: modulus of the bending "

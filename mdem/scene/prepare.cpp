@@ -11,6 +11,7 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/refuse_state.hpp"
 #include "scene/state_files.hpp"
 #include "scene/term_damping.hpp"
@@ -281,9 +282,13 @@ Prepared prepare(Scene& scene) {
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
-  if (scene.from_file())
-    refuse_overlaps(out.topology, out.interaction, out.state, {scene.source->file(), 0, ""},
-                    scene.run.mode == RunOptions::Mode::relax);
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  const bool typed = rope && !rope->typed_places.empty();
+  if (scene.from_file() || typed)
+    refuse_overlaps(
+        out.topology, out.interaction, out.state,
+        typed ? InputError::Place{scene.path, 0, "rope.places_nm"} : InputError::Place{scene.source->file(), 0, ""},
+        scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
   return out;

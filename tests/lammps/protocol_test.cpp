@@ -555,7 +555,7 @@ TEST_F(LammpsRun, ImportSaysThatStepsWereTooLong) {
   const Outcome o = run("import there");
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.err.find("note: from step 0 to 1"), std::string::npos) << o.err;
-  EXPECT_NE(o.err.find("the account of energy does not close"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("the energy balance does not close"), std::string::npos) << o.err;
 }
 
 // Of a killed run all whole states are taken.

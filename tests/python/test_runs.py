@@ -107,6 +107,7 @@ class RunTest(FolderTest):
         np.testing.assert_allclose(universe.atoms.masses, 12.011 * atoms, rtol=1e-3)
         np.testing.assert_allclose(universe.atoms.radii, 10 * tube["tube.radius"].value, rtol=1e-6)
         self.assertEqual(universe.trajectory[2].time, run.frames[2].time_ps)
+        self.assertEqual(len(universe.select_atoms("resid 3 and segid cnt-10-10-tersoff")), run.frames[0].position.shape[1])
         with self.assertRaisesRegex(ropewalk.InputError, "frames.gsd"):
             self.run_.to_mdanalysis()
 

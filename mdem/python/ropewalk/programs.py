@@ -292,6 +292,7 @@ def picture(
     *,
     at_ps: Sequence[float] = (),
     seen_from: str = "side",
+    colour: Optional[str] = None,
     curves: Sequence[str] = (),
     sections: bool = False,
     width: Optional[float] = None,
@@ -306,6 +307,7 @@ def picture(
         out: file to write: .svg, .pdf or .png
         at_ps: times of the states, ps; empty: four over the run
         seen_from: "side" (the largest deflection in the page), "x", "y", "z", or two angles "30,20" in deg
+        colour: what tubes are coloured by, as "tension" or "shell"; None: bending moment, where frames have it
         curves: charts below: columns of log.csv, "twist_eV+bend_eV" for two in one
         sections: the cross-section of each state beside it
         width: of the figure, pixels (no unit)
@@ -315,7 +317,7 @@ def picture(
     """
     lists = {"at": ",".join(map(repr, map(float, at_ps))) or None, "curves": ",".join(curves) or None}
     _call(["picture", _directory(run), "-o", os.fspath(out), f"--from={seen_from}",
-           *_options(sections=sections, width=width, highest=highest, zoom=zoom, force=force, **lists)])
+           *_options(colour=colour, sections=sections, width=width, highest=highest, zoom=zoom, force=force, **lists)])
     return os.fspath(out)
 
 

@@ -202,7 +202,10 @@ RopeView view_of(const StoredEvents& events, const StoredFrame& frame, double be
     for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
     view.tubes.push_back(std::move(line));
     view.radii.push_back(topology.type_of(t).radius);
-    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
+    if (moment.empty()) continue;
+    view.colour.emplace_back();
+    for (int e = from; e < to; ++e)
+      view.colour.back().push_back(std::fabs(moment[static_cast<std::size_t>(e)]) / units::nN_nm);
   }
   for (const auto& [a, b] : events.links_at(frame.state.time))
     view.links.push_back(

@@ -43,7 +43,7 @@ const KeyTable<ThermostatOptions>& thermostat_table() {
                    read_temperature),
        Key::number("coupling_per_ps", {"1/ps", 1}, Bounds::positive(1e4), &O::coupling, required("0.1"),
                    "friction: velocities decay at this rate"),
-       Key::custom("seed", "", otherwise("1", "that of [start]"), "of its random numbers", read_seed)},
+       Key::custom("seed", "", otherwise("1", "that of [start]"), "seed of its random numbers", read_seed)},
       {}};
   return table;
 }

@@ -489,16 +489,17 @@ const KeyTable<GripLoad>& table_of_grip() {
       "any number of these: one end in a clamp; what is not said is held",
       {Key::custom(
            "end", "", required("\"upper\""),
-           "\"lower\": the first elements; \"upper\": the last ones; \"both\": what is said holds for the "
-           "upper ones, and the lower ones have the opposite motion and load; a strain is that of both together",
+           "\"lower\": holds the first elements; \"upper\": holds the last ones; \"both\": the keys describe the "
+           "upper clamp, and the lower one has the opposite motion and load; a strain is the total of both",
            [](const TomlTable& t, const Scene&, GripLoad& grip) {
              const int word = t.word("end", Words<int>{{"lower", 0}, {"upper", 1}, {"both", 2}});
              grip.end = word == 0 ? lower_end : upper_end;
              grip.both = word == 2;
            }),
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
-                 "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
-       Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
+                 "\"disc\": one rigid clamp; \"each\": a clamp for each tube, and each follows the keys below"),
+       Key::integer("elements", 1, 1000, &GripLoad::depth, standard(),
+                    "number of elements of each tube in the clamp")
            .that_counts_held(),
        axis_key(0, "held", "\"held\", \"free\", or what it follows: { displacement_nm = ... }, { force_nN = ... }"),
        axis_key(1, "held", "as for x"),
@@ -527,7 +528,7 @@ KeyTable<Selection> tubes_of_grip() {
   return {"grip",
           "",
           {Key::custom(
-              "tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
+              "tubes", "", standard("\"all\""), "tubes that the clamp holds: \"all\", or numbers from 0: [0, 3]",
               [](const TomlTable& t, const Scene& scene, Selection& on) { read_tube_selection(t, scene, on); })},
           {}};
 }

@@ -81,12 +81,11 @@ const KeyTable<PeriodicLoad>& periodic_table() {
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
        Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
-                   "by which the slice is drawn out from the first of these times on, [[ps, strain], ...]",
+                   "strain of the slice against time, [[ps, strain], ...], from the first of these times on",
                    read_strain),
        Key::custom(
            "tension_nN", "nN", otherwise("[[0, 0]]", "the slice keeps its length"),
-           "of the rope until the first time of strain, in time; the slice then takes the length that it asks "
-           "for",
+           "tension of the rope against time, until strain begins; until then the length of the slice is free",
            read_tension)},
       check_slice};
   return table;

@@ -16,7 +16,8 @@ SceneKind state_kind() {
       {"state",
        "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz, such as the final.csv of a "
        "run",
-       {Key::custom("file", "", required("\"state.csv\""), "looked for beside the scene", read_file)},
+       {Key::custom("file", "", required("\"state.csv\""), "name of the file, which is looked for beside the scene",
+                    read_file)},
        {}});
 }
 

@@ -84,7 +84,9 @@ const KeyTable<RunOptions>& run_table() {
            "relax: done when no force, and no torque over the radius of its tube, is larger"),
        Key::number(
            "energy_tolerance", unit::none, Bounds::range(1e-9, 1), [](auto& r) -> auto& { return r.goal.energy; },
-           standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
+           standard(),
+           "relax: done when, in addition, the energy of the bonds is estimated to be within this part of that at "
+           "the minimum"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps")},
       check_run_keys};
   return table;
