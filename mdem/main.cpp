@@ -31,6 +31,7 @@
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 #include "version.hpp"
 
 namespace {
@@ -44,7 +45,7 @@ using namespace ropewalk;
 // main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
 // OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
 void wait_briefly(char** argv, int threads) {
-  if ((threads > 0 ? threads : omp_get_max_threads()) == 1) return;
+  if ((threads > 0 ? threads : threads_in_use()) == 1) return;
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);
   give_back_cores();
@@ -123,7 +124,7 @@ CLI::Option* add_colour(CLI::App* c, std::string& colour, const char* what) {
       ->check(CLI::IsMember(colour_words()));
 }
 
-CLI::Validator thread_range() { return whole_number(1, 1024); }
+CLI::Validator thread_range() { return whole_number(1, most_threads); }
 
 void add_new(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "atomistic/child_process.hpp"
+#include "io/child_process.hpp"
 #include "io/files.hpp"
 #include "io/removal.hpp"
 
@@ -190,6 +190,7 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
   child.watched = {base + ".log", base + ".dat"};
   child.quiet_seconds = options.quiet_seconds;
   child.max_seconds = options.max_seconds;
+  child.most_bytes = options.most_bytes;
   child.interrupted = options.interrupted;
   for (const std::string& old : {base + ".log", base + ".dat", base + ".out"}) fs::remove(old, code);
   const ChildEnd end = run_child({program, "-in", name + ".in", "-log", name + ".log", "-nocite"}, child);
@@ -216,6 +217,10 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
     case ChildEnd::Kind::too_long:
       fail(fmt::format("took longer than {:g} s and was ended", options.max_seconds),
            "the tube may be too large: choose a smaller one or shorter cells");
+      break;
+    case ChildEnd::Kind::too_much:
+      fail(fmt::format("wrote more than {} MiB and was ended", child.most_bytes >> 20),
+           "it repeats itself or is not LAMMPS: look into its log");
       break;
     case ChildEnd::Kind::interrupted:
       fail("was interrupted", "run it again");

@@ -20,10 +20,11 @@ struct LammpsVersion {
 };
 
 struct LammpsOptions {
-  std::string program = "lmp";        // ROPEWALK_LMP overrides
-  double quiet_seconds = 120;         // killed when it has written nothing for so long
-  double max_seconds = 3600;          // killed after so long
-  std::function<bool()> interrupted;  // asked often; ends the child where it says true. May be empty
+  std::string program = "lmp";         // ROPEWALK_LMP overrides
+  double quiet_seconds = 120;          // killed when it has written nothing for so long
+  double max_seconds = 3600;           // killed after so long
+  long long most_bytes = 256LL << 20;  // killed when its files are so long
+  std::function<bool()> interrupted;   // asked often; ends the child where it says true. May be empty
 };
 
 // Failure of the child: its ERROR line, its last command, the folder, and a remedy. Exit code 3.

@@ -108,7 +108,7 @@ void refuse_reach(const std::string& path, int number, const std::string& line) 
 
 // Potential files name their units in the first line. LAMMPS converts some that say `real`, and believes them.
 void check_units(const std::string& path) {
-  std::ifstream file(path);
+  std::istringstream file(read_file(path));
   std::string line;
   std::getline(file, line);
   const std::string key = "UNITS:";

@@ -17,6 +17,7 @@
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -199,7 +200,7 @@ std::string changed_text(std::string text, const VariedNumber& source, bool plus
 ErrorInputs error_inputs(const Scene& scene, int tubes) {
   ErrorInputs out = InputsOf(scene, tubes).all();
   if (out.varied.empty())
-    throw InputError({scene.path, 0, "parameters"}, "has no number with a standard error",
+    throw InputError(place_in(scene, "parameters"), "has no number with a standard error",
                      "take a calibrated set, since the published one gives none, or write numbers of the scene as "
                      "{ value = 0.16, standard_error = 0.02 }");
   return out;

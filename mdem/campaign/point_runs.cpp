@@ -15,7 +15,7 @@
 #include "model/error.hpp"
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
-#include "run/threads.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

@@ -1,7 +1,6 @@
 #include "campaign/sweep_file.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "io/log.hpp"
 #include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
+#include "io/toml_text.hpp"
 #include "model/error.hpp"
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
@@ -291,9 +291,9 @@ void write_scene(const Sweep& s, SweepPoint& p) {
   const auto set = [&](std::size_t k) {
     try {
       p.text = with_value(p.text, axes[k]->key, p.values[k], s.scene_path);
-    } catch (const toml::parse_error& e) {
+    } catch (const TomlError& e) {
       throw InputError({s.path, axes[k]->line, axes[k]->key},
-                       fmt::format("cannot be set in {}: {}", s.scene_path, std::string(e.description())),
+                       fmt::format("cannot be set in {}: {}", s.scene_path, e.description),
                        "write the key as it would stand in the scene");
     }
   };
@@ -403,7 +403,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
     column_of_log(s.threshold->column, {s.path, 0, "threshold.column"});
   }
   top.finish();
-  const toml::table file = toml::parse(text, path);
+  const toml::table file = parsed_toml(text, path);
   s.axes = axes_in(file["vary"].as_table(), path);
   s.branch_axes = axes_in(file["branch"]["vary"].as_table(), path);
   if (top.has("branch") && s.branch_axes.empty())
@@ -480,7 +480,7 @@ std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<Sweep
     const bool bath = one.bath() && one.bath()->temperature.largest() > 0;
     if (bath && one.bath()->seed != other.bath()->seed) return "";
     // The strengths of tubes scatter by the seed of the scene.
-    const toml::table top = toml::parse(one.text);
+    const toml::table top = parsed_toml(one.text, sweep.scene_path);
     if (top["failure"]["strain_deviation"].value_or(0.0) > 0 && !top["failure"]["seed"]) return "";
     const State a = prepare(one).state, b = prepare(other).state;
     for (const auto of : {&State::position, &State::velocity})

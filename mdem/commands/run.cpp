@@ -4,9 +4,9 @@
 #include "run/begin_run.hpp"
 #include "run/limit_watch.hpp"
 #include "run/terminal_listener.hpp"
-#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

@@ -13,6 +13,7 @@
 #include "model/error.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
+#include "run/pending_files.hpp"
 #include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
@@ -178,7 +179,7 @@ class Import {
     write_file_atomically(dir_.limits(), limits_json(checkpoint_.limits));
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
-    write_report(dir_, scene_, prepared_for_report());
+    report_or_tell(dir_, listener_, [&] { write_report(dir_, scene_, prepared_for_report()); });
   }
 
   // The report compares with the state at time zero.

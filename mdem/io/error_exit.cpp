@@ -69,6 +69,8 @@ int report_error(const char* program, const std::exception& error) {
 }
 
 int code_at_exit(const char* program, int code) {
+  if (const std::string note = note_of_files(); !note.empty())
+    std::fprintf(stderr, "%s: note: %s\n", program, note.c_str());
   errno = 0;
   const bool failed = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !failed) return code;

@@ -57,7 +57,7 @@ class File {
     if (::ftruncate(file_, bytes) != 0) throw file_error(path_, "cannot be written", errno);
   }
   void flush() const {
-    if (::fsync(file_) != 0) throw file_error(path_, "cannot be written", errno);
+    if (!flush_to_disk(file_)) throw file_error(path_, "cannot be written", errno);
   }
 
  private:

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "io/child_process.hpp"
 #include "io/draft.hpp"
-#include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/drawing.hpp"
 #include "report/scatter.hpp"

@@ -16,6 +16,7 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 namespace {
@@ -108,7 +109,7 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
   if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
   if (!lacking.empty())
-    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+    throw InputError(place_in(scene, lacking), "is not for LAMMPS", "run this scene with `ropewalk run`");
 }
 
 std::string start_json(const LammpsStart& start) {

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
+
+#include "io/files.hpp"
+#include "io/plain_text.hpp"
 
 namespace ropewalk {
 namespace {
@@ -23,8 +26,10 @@ double memory_allowed() {
       least = std::min(least, static_cast<double>(limit.rlim_cur));
   }
   for (const char* path : group_limits) {
-    double bytes = 0;
-    if (std::ifstream(path) >> bytes && bytes > 0) least = std::min(least, bytes);
+    std::error_code none;
+    const double bytes =
+        std::filesystem::is_regular_file(path, none) ? leading_number(read_file(path)).value_or(0) : 0;
+    if (bytes > 0) least = std::min(least, bytes);
   }
   return least;
 }

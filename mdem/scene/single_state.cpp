@@ -9,6 +9,7 @@
 #include "model/error.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/refuse_state.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/state_files.hpp"
@@ -52,7 +53,7 @@ void check_length_of_law(const Scene& scene) {
   const ContactLawKind* kind = contact_law_kind(scene.contact.law);
   const double own = scene.parameters().element_length;
   if (kind && !kind->any_element_length && std::fabs(scene.element_length / own - 1) > 1e-6)
-    throw InputError({scene.path, 0, "--law"},
+    throw InputError(place_in(scene, "--law"),
                      fmt::format("law \"{}\" holds for elements of {:.6g} nm, and these have {:.6g} nm", kind->name,
                                  own, scene.element_length),
                      "use a set with the line law, or --law none");

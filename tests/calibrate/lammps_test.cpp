@@ -184,6 +184,17 @@ TEST_F(Lammps, ChildThatWritesButNeverEndsIsEnded) {
   EXPECT_THAT(message<LammpsError>("units metal\n", options), HasSubstr("longer than 1.2 s"));
 }
 
+TEST_F(Lammps, ChildThatFloodsIsEnded) {
+  LammpsOptions options;
+  options.most_bytes = 1 << 20;
+  for (const char* flood : {"exec yes", "yes", "yes > case.log", "exec yes > a-file-that-nobody-watches"}) {
+    options.program = script(flood);
+    EXPECT_THAT(message<LammpsError>("units metal\n", options), HasSubstr("wrote more than 1 MiB and was ended"))
+        << flood;
+    for (const auto& file : fs::directory_iterator(folder)) EXPECT_LE(fs::file_size(file), 1u << 20) << file;
+  }
+}
+
 TEST_F(Lammps, SignalIsNamed) {
   LammpsOptions options;
   options.program = script("kill -SEGV $$");

@@ -772,29 +772,31 @@ TEST_F(Cli, RunHasAllCoresWhereThreadsAreBound) {
   if (free == 1) GTEST_SKIP() << "this machine has one core";
 }
 
-// Where the scene is a pipe, the program has begun when the pipe is open, and waits. A program that was started
-// anew has the setting of its own in the environment that it began with.
+// The scene comes by standard input. It is longer than a pipe holds, so that the program has begun to read where
+// all of it is written, and then waits for its end. A program that was started anew has the setting of its own in
+// the environment that it began with.
 TEST_F(Cli, OnlyStepsOnSeveralThreadsStartTheProgramAnew) {
   const auto began_with = [&](const std::string& arguments, const std::string& environment = "") {
-    const std::string command =
-        "cd '" + dir.string() + "' && rm -f s.toml && mkfifo s.toml || exit 1\n" +
-        "env -u GOMP_SPINCOUNT -u OMP_WAIT_POLICY " + environment + " '" ROPEWALK_PROGRAM "' " + arguments +
-        " > /dev/null 2>&1 & program=$!\n" +
-        "exec 3> s.toml && tr '\\0' '\\n' < /proc/$program/environ | grep ^GOMP_ > began.txt\n" +
-        "exec 3>&-; wait $program";
+    const std::string command = "cd '" + dir.string() + "' && rm -f s.toml && mkfifo s.toml || exit 1\n" +
+                                "env -u GOMP_SPINCOUNT -u OMP_WAIT_POLICY " + environment +
+                                " '" ROPEWALK_PROGRAM "' " + arguments +
+                                " < s.toml > /dev/null 2>&1 & program=$!\n" +
+                                "exec 3> s.toml && head -c 200000 /dev/zero | tr '\\0' '#' >&3 && tr '\\0' '\\n' < "
+                                "/proc/$program/environ | grep ^GOMP_ > began.txt\n" +
+                                "exec 3>&-; wait $program";
     std::system(command.c_str());
     return slurp(dir / "began.txt");
   };
   const std::string anew = "GOMP_SPINCOUNT=2000\n";
-  EXPECT_EQ(began_with("run s.toml --out d --threads 1"), "");
-  EXPECT_EQ(began_with("run s.toml --out d --threads 2"), anew);
-  EXPECT_EQ(began_with("run --threads 2 --out d s.toml"), anew);
-  EXPECT_EQ(began_with("run s.toml --out d", "OMP_NUM_THREADS=1"), "");
-  EXPECT_EQ(began_with("run s.toml --out d", "OMP_NUM_THREADS=2"), anew);
-  EXPECT_EQ(began_with("run s.toml --out d --threads 2", "GOMP_SPINCOUNT=7"), "GOMP_SPINCOUNT=7\n");
-  EXPECT_EQ(began_with("bench s.toml"), "");
-  EXPECT_EQ(began_with("bench s.toml --threads 1,2"), anew);
-  EXPECT_EQ(began_with("check s.toml", "OMP_NUM_THREADS=2"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 1"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 2"), anew);
+  EXPECT_EQ(began_with("run --threads 2 --out d /dev/stdin"), anew);
+  EXPECT_EQ(began_with("run /dev/stdin --out d", "OMP_NUM_THREADS=1"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d", "OMP_NUM_THREADS=2"), anew);
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 2", "GOMP_SPINCOUNT=7"), "GOMP_SPINCOUNT=7\n");
+  EXPECT_EQ(began_with("bench /dev/stdin"), "");
+  EXPECT_EQ(began_with("bench /dev/stdin --threads 1,2"), anew);
+  EXPECT_EQ(began_with("check /dev/stdin", "OMP_NUM_THREADS=2"), "");
 }
 
 TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {

@@ -9,6 +9,7 @@ from typing import Optional, Union
 import numpy as np
 
 from . import _core
+from .numbers import real_array
 from .parameters import ParameterSet
 from .scene import Scene
 from .simulation import Energies, Simulation
@@ -66,7 +67,8 @@ def energy(
             raise TypeError("a state alone does not know its parameter set: give `parameters`")
         scene = state.scene if isinstance(state, Simulation) else state
         flat = (state.state if isinstance(state, Simulation) else state.start).flat
-        found = _core.energy_in_scene(scene._core, flat.position, flat.orientation, reference)
+        found = _core.energy_in_scene(scene._core, real_array(flat.position, "position"),
+                                      real_array(flat.orientation, "orientation"), reference)
     else:
         one = isinstance(parameters, (str, os.PathLike, ParameterSet))
         sets: Sequence[SetName] = [parameters] if one else parameters  # type: ignore[list-item,assignment]
@@ -78,7 +80,8 @@ def energy(
             given = state.state if isinstance(state, Simulation) else state.start if isinstance(state, Scene) else state
             flat = given.flat
             found = _core.energy_of_state(
-                given.tube_begin.tolist(), flat.position, flat.orientation, given.element_length_nm, options
+                given.tube_begin.tolist(), real_array(flat.position, "position"),
+                real_array(flat.orientation, "orientation"), given.element_length_nm, options
             )
         else:
             found = _core.energy_of_file(os.fspath(state), options)

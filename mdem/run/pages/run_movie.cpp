@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "io/child_process.hpp"
 #include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"

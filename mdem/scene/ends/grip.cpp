@@ -13,6 +13,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/end_moment.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"
 
@@ -590,7 +591,7 @@ GripLoad GripDrive::at(const GripLoad& grip, const Scene& scene, const Topology&
     free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));
     const bool both = topology.begins_strand(t) && topology.ends_strand(t);
     if ((both ? 2 : 1) * load.depth > length)
-      throw InputError({scene.path, 0, "grip.elements"},
+      throw InputError(place_in(scene, "grip.elements"),
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),
                        "leave half of each tube to the other end");
     const int first = grip.end == lower_end ? 0 : length - load.depth;
@@ -609,14 +610,14 @@ void GripDrive::refuse_start(const Scene& scene, const Topology& topology, const
     for (const int e : grip->elements) {
       if (std::find(held.begin(), held.end(), e) == held.end()) continue;
       const int tube = topology.tube_of(e);
-      throw InputError({scene.path, 0, "grip"},
+      throw InputError(place_in(scene, "grip"),
                        fmt::format("two grips hold element {} of tube {}", e - topology.tube_begin[tube], tube),
                        "give each its own end or its own tubes");
     }
     held.insert(held.end(), grip->elements.begin(), grip->elements.end());
     for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
       if (grip->is_unfelt(axis, state))
-        throw InputError({scene.path, 0, fmt::format("grip.{}", grip_axis_names[axis])},
+        throw InputError(place_in(scene, fmt::format("grip.{}", grip_axis_names[axis])),
                          "is a load that nothing in the clamp feels: the elements are free of it",
                          "set slide_free, spin_free or tilt_free to false");
   }

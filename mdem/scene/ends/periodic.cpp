@@ -12,6 +12,7 @@
 #include "scene/key_table.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/schedule_rows.hpp"
 
 namespace ropewalk {
@@ -150,7 +151,7 @@ void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, c
       if (images.count(e) == 0) continue;
       const int tube = topology.tube_of(e);
       throw InputError(
-          {scene.path, 0, "load.elements"},
+          place_in(scene, "load.elements"),
           fmt::format("element {} of tube {} is an image of the slice, and a load on it has no effect",
                       e - topology.tube_begin[tube], tube),
           topology.strands() < topology.tubes()

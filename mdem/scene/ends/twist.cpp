@@ -8,6 +8,7 @@
 #include "scene/end_moment.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 namespace {
@@ -163,11 +164,11 @@ std::string TwistDrive::needs_time() const {
 void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
                               const LoadsAndConstraints& loads) const {
   if (load.application == TwistLoad::Application::tangential && topology.tubes() == 1)
-    throw InputError({scene.path, 0, "twist.application"},
+    throw InputError(place_in(scene, "twist.application"),
                      "tangential forces about the axis of one tube have no arm", "take \"couple\"");
   for (int t = 0; t < topology.tubes(); ++t)
     if (topology.length_of(t) < 2)
-      throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
+      throw InputError(place_in(scene, "twist"), fmt::format("tube {} has one element and no two grips", t),
                        "take tubes of two elements or more");
   refuse_end_moment(scene, topology, loads, "twist.moment_nN_nm");
 }

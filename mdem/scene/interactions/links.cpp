@@ -23,7 +23,8 @@ class LinksDrive : public Drive {
  public:
   LinkLaw law;
   std::vector<int> between;  // tube, element, to tube, to element, ...
-  std::string path;          // of the scene
+  InputError::Place place;
+  int between_line = 0;
 
   SceneTable table() const override;
   std::string words() const override;
@@ -49,7 +50,7 @@ class LinksDrive : public Drive {
       return;
     if (!at_start(topology, state).empty()) return;
     throw InputError(
-        {path, 0, "links"},
+        place,
         fmt::format(
             "none is placed: no two tubes that they join face each other within {:.3g} nm between their walls, or "
             "the number per length is so small that chance gave none",
@@ -82,16 +83,17 @@ class LinksDrive : public Drive {
                                              0.5 * of_b.element_length)) -
           of_a.radius - of_b.radius;
       if (apart > law.reach)
-        throw InputError({path, 0, "links.between"},
+        throw InputError(between_place(),
                          fmt::format("links elements {} and {} whose walls are {:.3g} nm apart", a, b, apart),
                          fmt::format("name elements that touch, or raise reach_nm above {:.3g}", law.reach));
     }
     return placed_links(law, topology, state, pairs(topology));
   }
+  InputError::Place between_place() const { return {place.file, between_line, "links.between"}; }
   std::vector<std::pair<int, int>> pairs(const Topology& topology) const {
     std::vector<std::pair<int, int>> all;
     for (std::size_t k = 0; k + 3 < between.size(); k += 4) {
-      const InputError::Place place = {path, 0, "links.between"};
+      const InputError::Place place = between_place();
       const int a = element_of_tube(topology, between[k], between[k + 1], place),
                 b = element_of_tube(topology, between[k + 2], between[k + 3], place);
       if (between[k] == between[k + 2])
@@ -137,7 +139,8 @@ void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links
 
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
   LinkLaw& law = links.law;
-  links.path = scene.path;
+  links.place = {scene.path, t.line(), "links"};
+  links.between_line = t.line("between");
   // Each table has places of its own.
   const auto before = static_cast<std::uint64_t>(scene.drives_of<LinksDrive>().size());
   if (!t.has("seed")) law.seed = scene.start.seed + (before << 32);

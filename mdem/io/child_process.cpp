@@ -1,8 +1,9 @@
-#include "atomistic/child_process.hpp"
+#include "io/child_process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,11 +13,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <limits>
 #include <thread>
 
 #include "io/clocks.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 // The process group of the child, which a signal to this process also ends. There is one child at a time; a second
@@ -63,7 +65,7 @@ class SignalGuard {
 long long bytes_written(const ChildOptions& options) {
   long long bytes = 0;
   struct stat status {};
-  if (::stat(options.output.c_str(), &status) == 0) bytes += status.st_size;
+  if (!options.output.empty() && ::stat(options.output.c_str(), &status) == 0) bytes += status.st_size;
   for (const std::string& file : options.watched)
     if (::stat(file.c_str(), &status) == 0) bytes += status.st_size;
   return bytes;
@@ -71,7 +73,7 @@ long long bytes_written(const ChildOptions& options) {
 
 // Runs in the child between fork and exec: only async-signal-safe calls are allowed.
 [[noreturn]] void become(char* const* arguments, char* const* environment, const char* folder, int output,
-                         int report, pid_t parent) {
+                         int report, pid_t parent, const struct rlimit& most) {
   const auto give_up = [&] {
     const int code = errno;
     (void)!::write(report, &code, sizeof code);
@@ -85,7 +87,10 @@ long long bytes_written(const ChildOptions& options) {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   const int input = ::open("/dev/null", O_RDONLY);
   if (::chdir(folder) != 0) give_up();
-  if (::dup2(input, 0) < 0 || ::dup2(output, 1) < 0 || ::dup2(output, 2) < 0) give_up();
+  if (::dup2(input, 0) < 0) give_up();
+  if (output >= 0 && (::dup2(output, 1) < 0 || ::dup2(output, 2) < 0)) give_up();
+  ::setrlimit(RLIMIT_FSIZE, &most);
+  ::signal(SIGXFSZ, SIG_DFL);  // the end of a program that would go on without its file
   ::execvpe(arguments[0], arguments, environment);
   give_up();
   ::_exit(127);
@@ -98,7 +103,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-std::vector<std::string> one_thread_environment() {
+std::vector<std::string> one_thread_environment(bool single) {
   std::vector<std::string> variables;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -106,6 +111,7 @@ std::vector<std::string> one_thread_environment() {
   }
   variables.push_back("OMP_NUM_THREADS=1");
   // A single process needs no network; Open MPI starts in half the time without the search for one.
+  if (!single) return variables;
   for (const char* setting : {"OMPI_MCA_btl=self", "OMPI_MCA_pml=ob1"}) {
     const std::string name = std::string(setting).substr(0, std::string(setting).find('=') + 1);
     const auto same = [&](const std::string& text) { return text.rfind(name, 0) == 0; };
@@ -119,7 +125,8 @@ std::vector<std::string> one_thread_environment() {
 ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions& options) {
   const double start = steady_seconds();
   ChildEnd end;
-  std::vector<std::string> argument_texts = arguments, environment_texts = one_thread_environment();
+  std::vector<std::string> argument_texts = arguments,
+                           environment_texts = one_thread_environment(!options.starts_ranks);
   const std::vector<char*> argument_list = pointers(argument_texts), environment = pointers(environment_texts);
 
   const auto failed = [&](int code) {
@@ -127,20 +134,26 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
     end.code = code;
     return end;
   };
-  const int output = ::open(options.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (output < 0) return failed(errno);
+  const bool own_output = !options.output.empty();
+  const int output =
+      own_output ? ::open(options.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666) : -1;
+  if (own_output && output < 0) return failed(errno);
+  struct rlimit most {};
+  ::getrlimit(RLIMIT_FSIZE, &most);
+  const bool bounded = static_cast<rlim_t>(options.most_bytes) < most.rlim_cur;
+  if (bounded) most.rlim_cur = static_cast<rlim_t>(options.most_bytes);
   int report[2];  // closes by itself when exec succeeds, else carries errno
   if (::pipe2(report, O_CLOEXEC) != 0) {
     const int code = errno;
-    ::close(output);
+    if (own_output) ::close(output);
     return failed(code);
   }
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0)
-    become(argument_list.data(), environment.data(), options.folder.c_str(), output, report[1], parent);
+    become(argument_list.data(), environment.data(), options.folder.c_str(), output, report[1], parent, most);
   const int fork_code = errno;
-  ::close(output);
+  if (own_output) ::close(output);
   ::close(report[1]);
   if (child < 0) {
     ::close(report[0]);
@@ -167,6 +180,8 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
       const bool signalled = WIFSIGNALED(status);
       end.kind = signalled ? ChildEnd::Kind::killed_by_signal : ChildEnd::Kind::exited;
       end.code = signalled ? WTERMSIG(status) : WEXITSTATUS(status);
+      const bool full = (signalled || end.code != 0) && bytes_written(options) >= options.most_bytes;
+      if (bounded && ((signalled && end.code == SIGXFSZ) || full)) end.kind = ChildEnd::Kind::too_much;
       return end;
     }
     if (done < 0 && errno != EINTR) return failed(errno);
@@ -177,13 +192,16 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
     }
     end.seconds = seconds_since(start);
     const bool asked = options.interrupted && options.interrupted();
-    const bool too_long = end.seconds > options.max_seconds;
-    if (asked || too_long || seconds_since(last_growth) > options.quiet_seconds) {
+    const bool too_long = end.seconds > options.max_seconds, too_much = bytes >= options.most_bytes;
+    if (asked || too_long || too_much || seconds_since(last_growth) > options.quiet_seconds) {
       ::kill(-child, SIGKILL);
       ::kill(child, SIGKILL);
       while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
       }
-      end.kind = asked ? ChildEnd::Kind::interrupted : too_long ? ChildEnd::Kind::too_long : ChildEnd::Kind::quiet;
+      end.kind = asked      ? ChildEnd::Kind::interrupted
+                 : too_long ? ChildEnd::Kind::too_long
+                 : too_much ? ChildEnd::Kind::too_much
+                            : ChildEnd::Kind::quiet;
       return end;
     }
     std::this_thread::sleep_for(std::chrono::duration<double>(pause));
@@ -191,4 +209,14 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   }
 }
 
-}  // namespace ropewalk::calibrate
+ProgramEnd run_program(const std::vector<std::string>& words) {
+  ChildOptions options;
+  options.quiet_seconds = std::numeric_limits<double>::infinity();
+  options.max_seconds = 4 * 3600;
+  options.most_bytes = std::numeric_limits<long long>::max();
+  const ChildEnd end = run_child(words, options);
+  if (end.kind == ChildEnd::Kind::not_started && end.code == ENOENT) return ProgramEnd::missing;
+  return end.kind == ChildEnd::Kind::exited && end.code == 0 ? ProgramEnd::well : ProgramEnd::failed;
+}
+
+}  // namespace ropewalk
