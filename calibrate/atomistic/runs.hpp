@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 #include "atomistic/stiffness.hpp"
 
 namespace ropewalk::calibrate {

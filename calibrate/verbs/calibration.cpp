@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 #include "atomistic/runs.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"

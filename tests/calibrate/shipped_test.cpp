@@ -2,7 +2,7 @@
 // has them, against the integral over the two shells.
 #include <gtest/gtest.h>
 
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 #include "atomistic/stiffness.hpp"
 #include "contact/integral.hpp"
 #include "io/parameters_toml.hpp"

@@ -17,7 +17,7 @@ FORBIDDEN = {
     r"\bmkdtemp\s*\(|\bmkstemp\s*\(|\btmpnam\b|\btemp_directory_path\s*\(|\"TMPDIR\"":
         ("mdem/io/removal.cpp", "take a TemporaryFolder"),
     r"\bO_CREAT\b(?![^;]*(?:O_EXCL|O_NOFOLLOW))|\bfreopen\s*\((?!\"/dev/null\")|\bofstream\b":
-        ("calibrate/atomistic/child_process.cpp", "take opened_to_write() or write_file_atomically()"),
+        ("mdem/atoms/child_process.cpp", "take opened_to_write() or write_file_atomically()"),
     r"\brename\s*\(": ("mdem/io/files.cpp", "take a Draft, or rename_whole()"),
 }
 # A file in a folder that was made for it, or one that the user names; written by no path that others know.
@@ -33,7 +33,7 @@ RESULT = "a result, which the manual names and which replaces no file of another
 MAY_APPEND = {
     "mdem/campaign/pilot_runs.cpp": FOLDER,
     "mdem/commands/convert.cpp": FOLDER,
-    "calibrate/atomistic/lammps.cpp": FOLDER,
+    "mdem/atoms/lammps.cpp": FOLDER,
     "calibrate/friction/sliding.cpp": FOLDER,
     "validate/cases/common/lammps_session.cpp": FOLDER,
     "mdem/commands/new.cpp": RESULT,

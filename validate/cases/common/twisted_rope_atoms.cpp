@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 #include "atomistic/runs.hpp"
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"

@@ -1,4 +1,4 @@
-#include "atomistic/lammps.hpp"
+#include "atoms/lammps.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -12,11 +12,11 @@
 #include <filesystem>
 #include <sstream>
 
-#include "atomistic/child_process.hpp"
+#include "atoms/child_process.hpp"
 #include "io/files.hpp"
 #include "io/removal.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,4 +228,4 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
     fail("left an incomplete log", "check the disk and the folder");
 }
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

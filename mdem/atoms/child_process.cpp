@@ -1,4 +1,4 @@
-#include "atomistic/child_process.hpp"
+#include "atoms/child_process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 
 #include "io/clocks.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 // The process group of the child, which a signal to this process also ends. There is one child at a time; a second
@@ -191,4 +191,4 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   }
 }
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

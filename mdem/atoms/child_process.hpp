@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 
 struct ChildOptions {
   std::string folder;                // working directory
@@ -27,4 +27,4 @@ struct ChildEnd {
 // ended as a whole. SIGINT and SIGTERM end the child first and then have their usual effect on this process.
 ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions& options);
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk
