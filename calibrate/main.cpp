@@ -128,16 +128,20 @@ void add_verbs(CLI::App& app, Verbs& v) {
   pull->callback([&v] { v.code = pull_command(v.pull); });
 
   CLI::App* fluctuations = app.add_subcommand(
-      "fluctuations", "EA, EI, GJ and their coupling from how the tubes of a run move in heat, beside those of a set");
+      "fluctuations",
+      "EA, EI, GJ and their coupling from how the tubes of a run move in heat, beside those of a set");
   FluctuationsArguments& m = v.fluctuations;
-  fluctuations->add_option("run", m.run, "Directory of a run: of ropewalk run with a thermostat, or of ropewalk coarsen")
+  fluctuations
+      ->add_option("run", m.run, "Directory of a run: of ropewalk run with a thermostat, or of ropewalk coarsen")
       ->required();
-  fluctuations->add_option("--temperature", m.temperature, "Of the motion, K [default: that of the run's thermostat]")
+  fluctuations
+      ->add_option("--temperature", m.temperature, "Of the motion, K [default: that of the run's thermostat]")
       ->check(number_within(Bounds::range(1, 1e4)));
   fluctuations->add_option("--after", m.after, "Leave out so much time at the start, ps")
       ->capture_default_str()
       ->check(number_within(Bounds::non_negative()));
-  fluctuations->add_option("--against", m.against, "Set to compare with: a file or a name [default: that of the run]");
+  fluctuations->add_option("--against", m.against,
+                           "Set to compare with: a file or a name [default: that of the run]");
   fluctuations->add_option("--out", m.out, "Write that set with these stiffnesses to this file");
   fluctuations->add_flag("--json", m.json, "JSON");
   fluctuations->add_flag("--force", m.force, "Replace an existing file");

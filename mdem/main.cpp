@@ -319,22 +319,25 @@ void add_atoms(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "atoms", "Elements as atoms: a frame of a run, or a state, as a LAMMPS data file or extended XYZ");
   c->add_option("path", v.atoms.path, "Directory of a run, or a state file (CSV)")->required();
-  c->add_option("-o", v.atoms.out,
-                "File to write: .data for LAMMPS, .xyz or .extxyz. Beside it: which atoms are of which element, and an "
-                "input of LAMMPS that relaxes them")
+  c->add_option(
+       "-o", v.atoms.out,
+       "File to write: .data for LAMMPS, .xyz or .extxyz. Beside it: which atoms are of which element, and an "
+       "input of LAMMPS that relaxes them")
       ->required();
   CLI::Option* frame =
       c->add_option("--frame", v.atoms.frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
-  CLI::Option* at = c->add_option("--at", v.atoms.at,
-                                  "A limit that the run has passed: the place where it did so first, in the last frame "
-                                  "before that")
-                        ->excludes(frame);
+  CLI::Option* at =
+      c->add_option("--at", v.atoms.at,
+                    "A limit that the run has passed: the place where it did so first, in the last frame "
+                    "before that")
+          ->excludes(frame);
   c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
       ->capture_default_str()
       ->check(number_within(Bounds::range(1, 1000)))
       ->needs(at);
   c->add_option("--tubes", v.atoms.tubes, "These tubes alone, from 0: 0-18,20");
-  c->add_option("--between", v.atoms.between, "This stretch of each tube alone, nm from its first end at rest: 20,40");
+  c->add_option("--between", v.atoms.between,
+                "This stretch of each tube alone, nm from its first end at rest: 20,40");
   c->add_flag("--relax", v.atoms.relax,
               "Have LAMMPS minimise the energy with the ends held, and print it beside that of the model");
   c->add_option("--potential", v.atoms.potential,

@@ -35,8 +35,10 @@ std::vector<Numbers> all_of(const Row& row, const std::vector<int>& windows, dou
   for (std::size_t w = 0; w < windows.size(); ++w) out.push_back(stiffness_of(row[w], windows[w] * a, kT));
   Moments grown = row.back();
   if (windows.size() > 1)
-    for (int k = 0; k < moments; ++k) grown[static_cast<std::size_t>(k)] -= row.front()[static_cast<std::size_t>(k)];
-  out.push_back(stiffness_of(grown, (windows.size() > 1 ? windows.back() - windows.front() : windows.back()) * a, kT));
+    for (int k = 0; k < moments; ++k)
+      grown[static_cast<std::size_t>(k)] -= row.front()[static_cast<std::size_t>(k)];
+  out.push_back(
+      stiffness_of(grown, (windows.size() > 1 ? windows.back() - windows.front() : windows.back()) * a, kT));
   return out;
 }
 
@@ -63,7 +65,8 @@ BondMotion bond_motion(const State& state, std::size_t i) {
 
 void FluctuationSums::add_chain(const State& state, std::size_t first, int elements) {
   if (frames_ == 0) bonds_.push_back(elements - 1);
-  for (int b = 0; b + 1 < elements; ++b) motions_.push_back(bond_motion(state, first + static_cast<std::size_t>(b)));
+  for (int b = 0; b + 1 < elements; ++b)
+    motions_.push_back(bond_motion(state, first + static_cast<std::size_t>(b)));
 }
 
 Fluctuation FluctuationSums::evaluate(double temperature) const {
@@ -136,13 +139,15 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
           sum[n].*which += left[n].*which;
           square[n].*which += left[n].*which * left[n].*which;
         };
-        for (double Numbers::*which : {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling})
+        for (double Numbers::*which :
+             {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling})
           add(which);
       }
     }
     const auto n_blocks = static_cast<double>(blocks);
     for (std::size_t n = 0; n < error.size(); ++n)
-      for (double Numbers::*which : {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling}) {
+      for (double Numbers::*which :
+           {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling}) {
         const double spread = square[n].*which / n_blocks - std::pow(sum[n].*which / n_blocks, 2);
         error[n].*which = std::max(error[n].*which, std::sqrt(std::max(0.0, (n_blocks - 1) * spread)));
       }
@@ -165,8 +170,8 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
     const auto agree = [](const Measured& x, const Measured& y) {
       return std::fabs(x.value - y.value) < 3 * std::hypot(x.standard_error, y.standard_error);
     };
-    out.local = out.local && agree(k.EA, out.rod.EA) && agree(k.EI_x, out.rod.EI_x) && agree(k.EI_y, out.rod.EI_y) &&
-                agree(k.GJ, out.rod.GJ);
+    out.local = out.local && agree(k.EA, out.rod.EA) && agree(k.EI_x, out.rod.EI_x) &&
+                agree(k.EI_y, out.rod.EI_y) && agree(k.GJ, out.rod.GJ);
   }
   // What stays: the variance of the means of both halves of the time, which have no noise in common.
   const auto half = static_cast<std::size_t>(frames_ / 2);

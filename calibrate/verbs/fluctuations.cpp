@@ -24,7 +24,7 @@ constexpr double much_static = 0.1;
 
 // One number of the result, with that of a set.
 struct Line {
-  const char* key;   // of the set
+  const char* key;  // of the set
   const char* name;
   const char* unit;
   Measured RodStiffness::*value;
@@ -69,10 +69,10 @@ std::vector<FluctuationSums> read_motion(const RunDirectory& dir, Scene& scene, 
     for (FluctuationSums& sum : sums) sum.end_frame();
   }
   if (used < fewest_frames)
-    throw InputError({dir.frames(), 0, "--after"},
-                     fmt::format("{} of its {} frames lie after {:g} ps, and {} are needed", used, read, a.after,
-                                 fewest_frames),
-                     "take a longer run, or more frames: run.frames_every_ps");
+    throw InputError(
+        {dir.frames(), 0, "--after"},
+        fmt::format("{} of its {} frames lie after {:g} ps, and {} are needed", used, read, a.after, fewest_frames),
+        "take a longer run, or more frames: run.frames_every_ps");
   return sums;
 }
 
@@ -105,27 +105,29 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
   }
   fmt::print("\n");
   if (!f.local)
-    fmt::print("note: the windows do not agree: the bonds are not independent, or the time is too short. The row \"rod\" "
-               "leaves out what ends of windows add\n");
+    fmt::print(
+        "note: the windows do not agree: the bonds are not independent, or the time is too short. The row \"rod\" "
+        "leaves out what ends of windows add\n");
   if (f.static_part > much_static)
-    fmt::print("note: {:.0f} % of the variance of the bonds stays over all of the time: the tubes are bent or twisted at "
-               "rest, or the time is too short, and stiffnesses are too small by that\n",
-               100 * f.static_part);
+    fmt::print(
+        "note: {:.0f} % of the variance of the bonds stays over all of the time: the tubes are bent or twisted at "
+        "rest, or the time is too short, and stiffnesses are too small by that\n",
+        100 * f.static_part);
 }
 
 nlohmann::ordered_json as_json(const Fluctuation& f, const ParameterSet& against, double temperature) {
   const auto row = [](const RodStiffness& k) {
     nlohmann::ordered_json out = {{"bonds", k.window}};
     for (const Line& line : lines)
-      out[fmt::format("{} ({})", line.name, line.unit)] = {{"value", (k.*line.value).value * in_nN},
-                                                           {"standard_error", (k.*line.value).standard_error * in_nN}};
+      out[fmt::format("{} ({})", line.name, line.unit)] = {
+          {"value", (k.*line.value).value * in_nN}, {"standard_error", (k.*line.value).standard_error * in_nN}};
     return out;
   };
   auto windows = nlohmann::ordered_json::array();
   for (const RodStiffness& k : f.windows) windows.push_back(row(k));
-  return {{"set", against.name},       {"temperature_K", temperature},   {"frames", f.frames}, {"bonds", f.bonds},
-          {"windows", windows},        {"rod", row(f.rod)},              {"local", f.local},
-          {"static_part", f.static_part}};
+  return {{"set", against.name}, {"temperature_K", temperature}, {"frames", f.frames},
+          {"bonds", f.bonds},    {"windows", windows},           {"rod", row(f.rod)},
+          {"local", f.local},    {"static_part", f.static_part}};
 }
 
 // The set with the stiffnesses of the motion.
@@ -165,7 +167,8 @@ int fluctuations_command(const FluctuationsArguments& a) {
   const RunDirectory dir{a.run};
   Scene scene = read_run_scene(dir);
   if (!a.out.empty() && scene.sets.size() > 1)
-    throw InputError({a.run, 0, "--out"}, "the run has several kinds of tubes", "write one set at a time: coarsen them alone");
+    throw InputError({a.run, 0, "--out"}, "the run has several kinds of tubes",
+                     "write one set at a time: coarsen them alone");
   std::vector<ParameterSet> against = scene.sets;
   if (!a.against.empty())
     for (ParameterSet& set : against) set = read_parameters(find_parameters(a.against, "", {"", 0, "--against"}));
@@ -177,16 +180,17 @@ int fluctuations_command(const FluctuationsArguments& a) {
     try {
       f = sums[type].evaluate(temperature);
     } catch (const std::invalid_argument& e) {
-      throw InputError({dir.frames(), 0, ""}, e.what(), "take tubes of three elements or more: --element-length-nm of coarsen");
+      throw InputError({dir.frames(), 0, ""}, e.what(),
+                       "take tubes of three elements or more: --element-length-nm of coarsen");
     }
     if (a.json)
       json.push_back(as_json(f, against[type], temperature));
     else
       print_result(f, against[type], temperature);
     if (a.out.empty()) continue;
-    const std::string text = parameters_text(with_stiffness(against[type], f, temperature, a),
-                                             "# Stiffnesses from fluctuations at a temperature; all else of " +
-                                                 against[type].name + ".\n");
+    const std::string text = parameters_text(
+        with_stiffness(against[type], f, temperature, a),
+        "# Stiffnesses from fluctuations at a temperature; all else of " + against[type].name + ".\n");
     parameters_of_text(text, a.out);  // throws where other commands would refuse it
     write_file_atomically(a.out, text);
     fmt::print(a.json ? stderr : stdout, "Set: {}\n", a.out);

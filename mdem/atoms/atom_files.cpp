@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -88,7 +90,6 @@ struct Species {
   long types = 0;
 };
 
-
 Format format_of_atoms(const std::string& path) {
   Lines lines(path);
   for (int k = 0; k < 200 && lines.next(); ++k) {
@@ -99,8 +100,9 @@ Format format_of_atoms(const std::string& path) {
     if (k == 0 && words.size() == 1 && parse(words[0], n)) return Format::xyz;
     if (words.size() == 2 && words[1] == "atoms" && parse(words[0], n)) return Format::data;
   }
-  throw InputError({path, 0, ""}, "is no file of atoms that is known here",
-                   "LAMMPS data files, LAMMPS text dumps and XYZ are read; ASE and MDAnalysis write XYZ from others");
+  throw InputError(
+      {path, 0, ""}, "is no file of atoms that is known here",
+      "LAMMPS data files, LAMMPS text dumps and XYZ are read; ASE and MDAnalysis write XYZ from others");
 }
 
 class Reader {
@@ -149,12 +151,12 @@ struct Style {
   const char* name;
   int type, x;
 };
-constexpr Style styles[] = {{"atomic", 1, 2}, {"charge", 1, 3}, {"molecular", 2, 3}, {"bond", 2, 3},
-                            {"angle", 2, 3},  {"full", 2, 4}};
+constexpr Style styles[] = {{"atomic", 1, 2}, {"charge", 1, 3}, {"molecular", 2, 3},
+                            {"bond", 2, 3},   {"angle", 2, 3},  {"full", 2, 4}};
 
-class DataReader : public Reader {
+class AtomDataReader : public Reader {
  public:
-  DataReader(const std::string& path, Species& species) : lines_(path), species_(species) { read(); }
+  AtomDataReader(const std::string& path, Species& species) : lines_(path), species_(species) { read(); }
   bool next(AtomFrame& frame, std::vector<std::int64_t>& ids) override {
     if (done_) return false;
     done_ = true;
@@ -189,8 +191,9 @@ class DataReader : public Reader {
       if (w.size() == 2 && w[1] == "atoms") {
         atoms = atom_count(lines_, w[0]);
       } else if (w.size() == 3 && w[1] == "atom" && w[2] == "types") {
-        species_.types = std::lround(number(lines_, w[0], "atom types"));
-      } else if (w.size() == 4 && w[2].size() == 3 && w[2].compare(1, 2, "lo") == 0 && w[2][0] >= 'x' && w[2][0] <= 'z') {
+        species_.types = std::llround(number(lines_, w[0], "atom types"));
+      } else if (w.size() == 4 && w[2].size() == 3 && w[2].compare(1, 2, "lo") == 0 && w[2][0] >= 'x' &&
+                 w[2][0] <= 'z') {
         low[w[2][0] - 'x'] = angstrom * number(lines_, w[0], "box");
         high[w[2][0] - 'x'] = angstrom * number(lines_, w[1], "box");
       } else if (w.size() == 6 && w[3] == "xy") {
@@ -200,7 +203,7 @@ class DataReader : public Reader {
           need(text, comment, "Masses");
           const std::vector<std::string> mass = words_of(text);
           if (mass.size() < 2) lines_.fail("Masses", "a line needs a type and a mass", truncated);
-          species_.masses[std::lround(number(lines_, mass[0], "Masses"))] = number(lines_, mass[1], "Masses");
+          species_.masses[std::llround(number(lines_, mass[0], "Masses"))] = number(lines_, mass[1], "Masses");
         }
       } else if (w[0] == "Atoms") {
         reserve(frame_, ids_, atoms);
@@ -255,11 +258,11 @@ class DataReader : public Reader {
   // By the columns of a line, with or without three image flags.
   const Style* guessed(const std::vector<std::string>& w) const {
     const std::size_t n = w.size();
-    const bool images = n > 8 || (n == 8 && w[7].find('.') == std::string::npos && w[6].find('.') == std::string::npos);
+    const bool images =
+        n > 8 || (n == 8 && w[7].find('.') == std::string::npos && w[6].find('.') == std::string::npos);
     const std::size_t plain = n - (images ? 3 : 0);
     for (const Style& s : {styles[0], styles[2], styles[5]})
-      if (plain == static_cast<std::size_t>(s.x) + 3)
-        return &styles[s.x == 2 ? 0 : s.x == 3 ? 2 : 5];
+      if (plain == static_cast<std::size_t>(s.x) + 3) return &styles[s.x == 2 ? 0 : s.x == 3 ? 2 : 5];
     lines_.fail("Atoms", fmt::format("have {} columns, and no style is named", n),
                 "name the style behind the word: Atoms # atomic");
   }
@@ -276,7 +279,8 @@ class DataReader : public Reader {
       if (w.size() < 4 || !parse(w[0], id) || index.find(id) == index.end())
         lines_.fail("Velocities", "a line needs an id of Atoms and three numbers", truncated);
       for (int x = 0; x < 3; ++x)
-        frame_.velocities[index[id]][x] = angstrom * number(lines_, w[static_cast<std::size_t>(x) + 1], "Velocities");
+        frame_.velocities[index[id]][x] =
+            angstrom * number(lines_, w[static_cast<std::size_t>(x) + 1], "Velocities");
     }
   }
 
@@ -289,9 +293,9 @@ class DataReader : public Reader {
 
 // --- LAMMPS dump -----------------------------------------------------------------------------------------
 
-class DumpReader : public Reader {
+class AtomDumpReader : public Reader {
  public:
-  DumpReader(const std::string& path, const Species& species, double time_step_fs)
+  AtomDumpReader(const std::string& path, const Species& species, double time_step_fs)
       : lines_(path), species_(species), time_step_(time_step_fs * units::fs) {}
 
   bool next(AtomFrame& frame, std::vector<std::int64_t>& ids) override {
@@ -344,8 +348,7 @@ class DumpReader : public Reader {
     const std::vector<std::string> words = words_of(head);
     const bool tilted = words.size() >= 3 && words[0] == "xy";
     const std::size_t flags = tilted ? 3 : 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      box.periodic[k] = words.size() >= flags + 3 && words[flags + k] == "pp";
+    for (std::size_t k = 0; k < 3; ++k) box.periodic[k] = words.size() >= flags + 3 && words[flags + k] == "pp";
     Vector3 low, high, tilt(0, 0, 0);
     for (int k = 0; k < 3; ++k) {
       need();
@@ -374,7 +377,8 @@ class DumpReader : public Reader {
       return at == names.end() ? -1 : static_cast<int>(at - names.begin());
     };
     const int id = column("id"), type = column("type"), element = column("element"), mass = column("mass");
-    if (id < 0) lines_.fail("ATOMS", "there is no column id", "dump id type x y z: it tells the atoms of the next frame");
+    if (id < 0)
+      lines_.fail("ATOMS", "there is no column id", "dump id type x y z: it tells the atoms of the next frame");
     std::array<int, 3> x{}, v{};
     bool scaled = false;
     for (const char* ending : {"", "u", "s", "su"}) {
@@ -537,9 +541,9 @@ struct AtomFiles::Impl {
     const File& f = files[at];
     file = f.path;
     if (f.format == Format::data)
-      reader = std::make_unique<DataReader>(f.path, species);
+      reader = std::make_unique<AtomDataReader>(f.path, species);
     else if (f.format == Format::dump)
-      reader = std::make_unique<DumpReader>(f.path, species, time_step_fs);
+      reader = std::make_unique<AtomDumpReader>(f.path, species, time_step_fs);
     else
       reader = std::make_unique<XyzReader>(f.path);
   }
@@ -566,9 +570,10 @@ struct AtomFiles::Impl {
     if (first_ids.empty()) {
       first_ids = ids;
     } else if (ids != first_ids) {
-      throw InputError({file, 0, ""},
-                       fmt::format("a frame has other atoms than the first one: {} and {}", ids.size(), first_ids.size()),
-                       "give the files of one simulation, in which no atom comes or goes");
+      throw InputError(
+          {file, 0, ""},
+          fmt::format("a frame has other atoms than the first one: {} and {}", ids.size(), first_ids.size()),
+          "give the files of one simulation, in which no atom comes or goes");
     }
   }
 };
@@ -588,7 +593,7 @@ AtomFiles::AtomFiles(std::vector<std::string> paths, double time_step_fs) : impl
       throw InputError({data[1].path, 0, ""}, "is a second data file", "give one, and dumps for more frames");
     return;
   }
-  for (const Impl::File& file : data) DataReader(file.path, impl_->species);
+  for (const Impl::File& file : data) AtomDataReader(file.path, impl_->species);
 }
 
 AtomFiles::~AtomFiles() = default;
@@ -610,7 +615,8 @@ bool AtomFiles::next(AtomFrame& frame) {
     ++impl_->at;
   }
   if (impl_->first_ids.empty())
-    throw InputError({impl_->file, 0, ""}, impl_->cut_off ? "ends within its first frame" : "has no frame", truncated);
+    throw InputError({impl_->file, 0, ""}, impl_->cut_off ? "ends within its first frame" : "has no frame",
+                     truncated);
   return false;
 }
 

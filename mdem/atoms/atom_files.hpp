@@ -1,5 +1,5 @@
-// Reads atoms from LAMMPS data files, LAMMPS text dumps, XYZ and extended XYZ, frame by frame. Lengths in the files are
-// Angstrom, velocities Angstrom/ps, or Angstrom/fs in a dump that says ITEM: UNITS real.
+// Reads atoms from LAMMPS data files, LAMMPS text dumps, XYZ and extended XYZ, frame by frame. Lengths in the files
+// are Angstrom, velocities Angstrom/ps, or Angstrom/fs in a dump that says ITEM: UNITS real.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ struct AtomFrame {
   std::int64_t step = 0;
 };
 
-// Frames of several files, one file after another. A data file beside dumps gives the species of their types and is no
-// frame itself. The atoms of every frame are in the order of the first: dumps are sorted by their id, XYZ files keep
-// theirs. What carbon is, the files say: by the element, or by the mass of a type; where there is one type and no mass,
-// it is carbon.
+// Frames of several files, one file after another. A data file beside dumps gives the species of their types and is
+// no frame itself. The atoms of every frame are in the order of the first: dumps are sorted by their id, XYZ files
+// keep theirs. What carbon is, the files say: by the element, or by the mass of a type; where there is one type and
+// no mass, it is carbon.
 class AtomFiles {
  public:
   // `time_step_fs`: of the steps of a dump that states no time.

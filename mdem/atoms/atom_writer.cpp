@@ -24,7 +24,8 @@ void append_head(fmt::memory_buffer& out, AtomFormat format, const AtomsOfElemen
   }
   Vector3 low, high;
   atoms.bounds(low, high);
-  fmt::format_to(to, "{}\n\n{} atoms\n{} atom types\n\n", lammps_comment(title), atoms.count(), atoms.parts().size());
+  fmt::format_to(to, "{}\n\n{} atoms\n{} atom types\n\n", lammps_comment(title), atoms.count(),
+                 atoms.parts().size());
   for (int k = 0; k < 3; ++k)
     fmt::format_to(to, "{0:.6f} {1:.6f} {2}lo {2}hi\n", low[k] / angstrom, high[k] / angstrom, "xyz"[k]);
   fmt::format_to(to, "\nMasses\n\n");

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double converged = 1e-7;  // nm and rad
 constexpr int most_rounds = 40;
-// The means over elements damp the shortest waves along a tube: those of turns to a half, those of positions to 5/8.
-// These factors make the iteration converge alike for the shortest and the longest wave.
+// The means over elements damp the shortest waves along a tube: those of turns to a half, those of positions to
+// 5/8. These factors make the iteration converge alike for the shortest and the longest wave.
 constexpr double over_turn = 4.0 / 3, over_shift = 16.0 / 13;
 
 Vector3 rotation_vector(const Eigen::Matrix3d& r) {
@@ -73,7 +73,7 @@ std::vector<ElementFit::Section> ElementFit::sections(const Position& position) 
     Eigen::Matrix<double, 4, 3> sums = Eigen::Matrix<double, 4, 3>::Zero();
     const double middle = centre_of(e);
     for (std::size_t k = begin_[static_cast<std::size_t>(e)]; k < begin_[static_cast<std::size_t>(e) + 1]; ++k) {
-      const Vector3 x = position(k);
+      const Eigen::RowVector3d x = position(k).transpose();
       sums.row(0) += x;
       sums.row(1) += (places_[k].s - middle) * x;
       sums.row(2) += places_[k].cosine * x;
@@ -81,10 +81,10 @@ std::vector<ElementFit::Section> ElementFit::sections(const Position& position) 
     }
     const Eigen::Matrix<double, 4, 3> fit = inverse_[static_cast<std::size_t>(e)] * sums;
     Section section;
-    section.centre = fit.row(0);
-    section.slope = fit.row(1);
-    // The orthonormal pair nearest to (p, q): (p, q) G^(-1/2) with G = (p, q)^T (p, q). By the theorem of Cayley and
-    // Hamilton G^(1/2) = (G + det 1)/(trace + 2 det)^(1/2) for a 2 x 2 matrix, det being that of the root.
+    section.centre = fit.row(0).transpose();
+    section.slope = fit.row(1).transpose();
+    // The orthonormal pair nearest to (p, q): (p, q) G^(-1/2) with G = (p, q)^T (p, q). By the theorem of Cayley
+    // and Hamilton G^(1/2) = (G + det 1)/(trace + 2 det)^(1/2) for a 2 x 2 matrix, det being that of the root.
     Eigen::Matrix<double, 3, 2> pair;
     pair << fit.row(2).transpose(), fit.row(3).transpose();
     const Eigen::Matrix2d g = pair.transpose() * pair;
@@ -120,8 +120,7 @@ void ElementFit::fit(const std::vector<Vector3>& positions, State& state, std::s
       const Vector3 turn = over_turn * rotation_vector(now[e].frame.transpose() * wanted[e].frame);
       change = std::max({change, shift.norm(), turn.norm()});
       state.position.set(first + e, state.position[first + e] + shift);
-      state.orientation.set(first + e,
-                            (state.orientation[first + e] * Quaternion(rotation_of(turn))).normalized());
+      state.orientation.set(first + e, (state.orientation[first + e] * Quaternion(rotation_of(turn))).normalized());
     }
     if (!(change > converged)) break;
   }

@@ -4,12 +4,12 @@
 //
 //   x = c + d (s - s_e) + p cos phi + q sin phi
 //
-// c is the centre of its atoms, d the slope of their centre line, and the orthonormal pair nearest to (p, q) with its
-// cross product is the orientation. So position and orientation come from all atoms. The means over an element differ
-// from the values at its centre where bend and twist change along the tube: the elements that are returned are those
-// whose own atoms have the same fit (fixed point iteration). What the elements lack is left over as a shape.
-// Errors: a thermal displacement u of atoms moves centre and orientation of an element of N atoms by about u/sqrt(N)
-// and u/(r sqrt(N/2)). Units nm, ps, rad.
+// c is the centre of its atoms, d the slope of their centre line, and the orthonormal pair nearest to (p, q) with
+// its cross product is the orientation. So position and orientation come from all atoms. The means over an element
+// differ from the values at its centre where bend and twist change along the tube: the elements that are returned
+// are those whose own atoms have the same fit (fixed point iteration). What the elements lack is left over as a
+// shape. Errors: a thermal displacement u of atoms moves centre and orientation of an element of N atoms by about
+// u/sqrt(N) and u/(r sqrt(N/2)). Units nm, ps, rad.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ struct LabelledAtom {
 
 // Shape of the cross-section of an element, beyond what its element says.
 struct SectionShape {
-  double radius = 0;              // nm, mean
-  double ovality = 0;             // nm, amplitude of the radius in 2 phi
+  double radius = 0;                // nm, mean
+  double ovality = 0;               // nm, amplitude of the radius in 2 phi
   double shear_x = 0, shear_y = 0;  // rad, of the centre line against the section's normal, in the body frame
 };
 

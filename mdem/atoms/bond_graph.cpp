@@ -105,7 +105,8 @@ BondGraph::BondGraph(const std::vector<Vector3>& positions, const std::vector<ch
     : neighbour_(positions.size()), count_(positions.size(), 0) {
   for (int k = 0; k < 3; ++k)
     if (box.periodic[static_cast<std::size_t>(k)] && box.width(k) < 2 * carbon_bond)
-      throw InputError({file, 0, ""}, fmt::format("its periodic box is {:.3g} nm wide, less than two bonds", box.width(k)),
+      throw InputError({file, 0, ""},
+                       fmt::format("its periodic box is {:.3g} nm wide, less than two bonds", box.width(k)),
                        "repeat it: replicate of LAMMPS, or repeat() of ASE");
   const Cells cells(positions, wanted, box);
   const NearestImage nearest(box);
@@ -116,10 +117,11 @@ BondGraph::BondGraph(const std::vector<Vector3>& positions, const std::vector<ch
       const double d = nearest(positions[j] - positions[i]).squaredNorm();
       if (d > carbon_bond * carbon_bond) return;
       if (d < atoms_overlap * atoms_overlap)
-        throw InputError({file, 0, ""},
-                         fmt::format("atoms {} and {} of the file overlap: they are {:.3g} nm apart", std::min<std::size_t>(i, j) + 1,
-                                     std::max<std::size_t>(i, j) + 1, std::sqrt(d)),
-                         "are lengths in Angstrom, and is the box that of these atoms?");
+        throw InputError(
+            {file, 0, ""},
+            fmt::format("atoms {} and {} of the file overlap: they are {:.3g} nm apart",
+                        std::min<std::size_t>(i, j) + 1, std::max<std::size_t>(i, j) + 1, std::sqrt(d)),
+            "are lengths in Angstrom, and is the box that of these atoms?");
       if (count_[i] < most) neighbour_[i][count_[i]] = j;
       if (count_[i] < 255) ++count_[i];
     });

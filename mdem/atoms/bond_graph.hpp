@@ -1,6 +1,7 @@
 // Neighbours of atoms within a cutoff.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace ropewalk {
 
-inline constexpr double carbon_bond = 0.18;   // nm: atoms nearer than this are bonded
+inline constexpr double carbon_bond = 0.18;    // nm: atoms nearer than this are bonded
 inline constexpr double atoms_overlap = 0.08;  // nm: nearer than this no two atoms come
 
 // Up to four neighbours of each atom; more are counted.

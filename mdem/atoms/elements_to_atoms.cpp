@@ -58,8 +58,8 @@ long first_height(const TubeReference& reference, double element_length, int ele
   return static_cast<long>(std::ceil(3 * element * element_length / reference.shape.length_per_hexagon - 1e-6));
 }
 
-AtomsOfElements::AtomsOfElements(const Topology& topology, const State& state, std::vector<TubeReference> references,
-                                 std::vector<TubePart> parts)
+AtomsOfElements::AtomsOfElements(const Topology& topology, const State& state,
+                                 std::vector<TubeReference> references, std::vector<TubePart> parts)
     : topology_(topology), state_(state), references_(std::move(references)), parts_(std::move(parts)) {}
 
 const TubeReference& AtomsOfElements::reference_of_tube(int tube) const {
@@ -84,7 +84,8 @@ void AtomsOfElements::for_each(const std::function<void(const PlacedAtom&)>& vis
     const TubePart& part = parts_[p];
     const TubeReference& reference = reference_of_tube(part.tube);
     const double a = topology_.type_of(part.tube).element_length;
-    const TubeCurve curve(state_, static_cast<std::size_t>(topology_.tube_begin[static_cast<std::size_t>(part.tube)]),
+    const TubeCurve curve(state_,
+                          static_cast<std::size_t>(topology_.tube_begin[static_cast<std::size_t>(part.tube)]),
                           topology_.length_of(part.tube), a, reference);
     const SiteRows rows(reference.chirality);
     PlacedAtom atom;

@@ -1,15 +1,15 @@
 // The way from elements to atoms.
 //
-// Element e of a tube (length a at rest) owns the sites of the lattice with e a <= s < (e + 1) a, where s is the height
-// of a site on the tube at rest. A site (s, phi) goes to
+// Element e of a tube (length a at rest) owns the sites of the lattice with e a <= s < (e + 1) a, where s is the
+// height of a site on the tube at rest. A site (s, phi) goes to
 //
 //   x = r(s) + R(s) rho (cos phi, sin phi, 0),   rho = r_0 (1 - nu strain)
 //
-// Between the centres of two elements r is the cubic Hermite curve with the axes as tangents, scaled by the chord, and R
-// turns at an even rate from one orientation to the next. Beyond the outermost centres r is straight and R does not
-// turn. nu is Poisson's ratio of the set, and the strain is that of the chord. Exact for uniform stretch and twist;
-// of a bend of curvature k, r is off an arc by less than k^3 a^4/384. Turn and shift of the lattice are those of the
-// body frames: site (0,0) has phi = 0 where the first element begins. Units nm, rad.
+// Between the centres of two elements r is the cubic Hermite curve with the axes as tangents, scaled by the chord,
+// and R turns at an even rate from one orientation to the next. Beyond the outermost centres r is straight and R
+// does not turn. nu is Poisson's ratio of the set, and the strain is that of the chord. Exact for uniform stretch
+// and twist; of a bend of curvature k, r is off an arc by less than k^3 a^4/384. Turn and shift of the lattice are
+// those of the body frames: site (0,0) has phi = 0 where the first element begins. Units nm, rad.
 #pragma once
 
 #include <functional>
@@ -40,9 +40,9 @@ class TubeCurve {
   struct Bond {
     Vector3 from, to, tangent_from, tangent_to;  // nm; tangents scaled by the chord
     Eigen::Quaterniond start;
-    Vector3 turn_axis;     // of the body
-    double turn = 0;       // rad
-    double radius = 0;     // nm
+    Vector3 turn_axis;  // of the body
+    double turn = 0;    // rad
+    double radius = 0;  // nm
   };
   double length_;
   std::vector<Bond> bonds_;

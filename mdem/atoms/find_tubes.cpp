@@ -20,12 +20,12 @@ constexpr std::size_t smallest_wall = 60;    // atoms
 constexpr std::size_t smallest_sheet = 100;  // atoms, to be counted as such
 constexpr double whole_part = 0.85;          // of the sites near an end, where a tube begins
 constexpr double window = 0.4;               // nm, in which they are counted
-constexpr double longest_burgers = 12;       // lattice constants: a longer mismatch is no defect but a second closure
+constexpr double longest_burgers = 12;  // lattice constants: a longer mismatch is no defect but a second closure
 constexpr std::uint32_t nobody = 0xffffffff;
 
 enum class Kind : unsigned char { other, edge, regular };
 
-long floor_div(long a, long b) { return a / b - ((a % b != 0) && ((a < 0) != (b < 0)) ? 1 : 0); }
+long floored(long a, long b) { return a / b - ((a % b != 0) && ((a < 0) != (b < 0)) ? 1 : 0); }
 
 struct Vector {  // of the lattice
   int p = 0, q = 0;
@@ -35,15 +35,18 @@ struct Vector {  // of the lattice
   // Turned by 60 degrees.
   Vector turned() const { return {-q, p + q}; }
   Vector mirrored() const { return {q, p}; }
-  double length() const { return std::sqrt(static_cast<double>(p) * p + static_cast<double>(p) * q + static_cast<double>(q) * q); }
+  double length() const {
+    return std::sqrt(static_cast<double>(p) * p + static_cast<double>(p) * q + static_cast<double>(q) * q);
+  }
 };
 
-// The same of sites: a turn about the middle of a hexagon, which swaps the sublattices; and a mirror that keeps them.
+// The same of sites: a turn about the middle of a hexagon, which swaps the sublattices; and a mirror that keeps
+// them.
 Site turned(const Site& s) {
   const int third = s.second ? 1 : 0;
   const int p = -(3 * s.j + third) - 2, q = 3 * s.i + third + 3 * s.j + third + 1;
   const bool second = ((p % 3) + 3) % 3 == 1;
-  return {static_cast<int>(floor_div(p, 3)), static_cast<int>(floor_div(q, 3)), second};
+  return {static_cast<int>(floored(p, 3)), static_cast<int>(floored(q, 3)), second};
 }
 Site mirrored(const Site& s) { return {s.j, s.i, s.second}; }
 
@@ -56,7 +59,7 @@ Site behind(const Site& s, int type) {
 // Sites between 0 and one turn of the circumference, so that equal ones are equal.
 Site reduced(Chirality c, Site s) {
   const auto arc = [&](long p, long q) { return p * (2L * c.n + c.m) + q * (2L * c.m + c.n); };
-  const long turns = floor_div(arc(s.i, s.j), arc(c.n, c.m));
+  const long turns = floored(arc(s.i, s.j), arc(c.n, c.m));
   s.i -= static_cast<int>(turns) * c.n;
   s.j -= static_cast<int>(turns) * c.m;
   return s;
@@ -88,11 +91,12 @@ class Search {
     for (std::size_t i = 0; i < raw_.size(); ++i)
       if (carbon_[i] && !seen[i]) wall(connected(i, seen));
     if (found_.tubes.empty())
-      throw InputError({file_, 0, ""}, "has no carbon nanotube in it",
-                       found_.sheets > 0
-                           ? fmt::format("{} connected part{} of carbon that {} closed around no axis", found_.sheets,
-                                         found_.sheets == 1 ? "" : "s", found_.sheets == 1 ? "is" : "are")
-                           : "lengths must be in Angstrom, and bonds of carbon shorter than 1.8 of them");
+      throw InputError(
+          {file_, 0, ""}, "has no carbon nanotube in it",
+          found_.sheets > 0
+              ? fmt::format("{} connected part{} of carbon that {} closed around no axis", found_.sheets,
+                            found_.sheets == 1 ? "" : "s", found_.sheets == 1 ? "is" : "are")
+              : "lengths must be in Angstrom, and bonds of carbon shorter than 1.8 of them");
     gather();
     sort();
     return std::move(found_);
@@ -215,7 +219,7 @@ class Search {
       normal += b.cross(c) + c.cross(a);
     }
     const bool in_order = normal.dot(normal_[from].cast<double>()) > 0;
-    normal_[to] = ((in_order ? 1 : -1) * normal.normalized()).cast<float>();
+    normal_[to] = ((in_order ? 1.0 : -1.0) * normal.normalized()).cast<float>();
     const auto next = static_cast<std::size_t>((type + (in_order ? 1 : 2)) % 3),
                after = static_cast<std::size_t>((type + (in_order ? 2 : 1)) % 3);
     slot_[to][next] = static_cast<signed char>(others[0]);
@@ -249,8 +253,8 @@ class Search {
   }
 
   struct Closures {
-    Vector around;           // zero: there is none
-    Vector along;            // of an endless tube
+    Vector around;            // zero: there is none
+    Vector along;             // of an endless tube
     Vector3 period{0, 0, 0};  // nm: the site that lies `along` further is here
     bool ring = false;
   };
@@ -306,7 +310,8 @@ class Search {
 
   // Turns or mirrors sites and closures alike.
   template <class OfSite, class OfVector>
-  void change(const std::vector<std::uint32_t>& wall, Closures& c, const OfSite& of_site, const OfVector& of_vector) {
+  void change(const std::vector<std::uint32_t>& wall, Closures& c, const OfSite& of_site,
+              const OfVector& of_vector) {
     for (const std::uint32_t i : wall)
       if (labelled_[i]) site_[i] = of_site(site_[i]);
     c.around = of_vector(c.around);
@@ -355,8 +360,8 @@ class Search {
     }
     if (c.ring)
       throw InputError({file_, 0, ""},
-                       fmt::format("the tube of {} atoms around ({:.2f}, {:.2f}, {:.2f}) nm bites its tail", wall.size(),
-                                   raw_[seed].x(), raw_[seed].y(), raw_[seed].z()),
+                       fmt::format("the tube of {} atoms around ({:.2f}, {:.2f}, {:.2f}) nm bites its tail",
+                                   wall.size(), raw_[seed].x(), raw_[seed].y(), raw_[seed].z()),
                        "a chain of elements has two ends: take away a few rings of its atoms");
     if (!normals_point_outwards(wall)) change(wall, c, mirrored, [](const Vector& v) { return v.mirrored(); });
     const auto turn = [&] { change(wall, c, turned, [](const Vector& v) { return v.turned(); }); };
@@ -410,7 +415,7 @@ class Search {
     }
     for (const std::uint32_t i : wall) {
       if (!labelled_[i]) continue;
-      const long periods = floor_div(height_in_thirds(tube.chirality, site_[i]) - cut, period);
+      const long periods = floored(height_in_thirds(tube.chirality, site_[i]) - cut, period);
       site_[i].i -= static_cast<int>(periods) * c.along.p;
       site_[i].j -= static_cast<int>(periods) * c.along.q;
       found_.positions[i] -= static_cast<double>(periods) * c.period;
@@ -446,8 +451,7 @@ class Search {
   }
 
   void count_defects(const std::vector<std::uint32_t>& wall, FoundTube& tube) const {
-    const long reach =
-        3 * static_cast<long>(std::ceil(window / rolled_shape(tube.chirality).length_per_hexagon));
+    const long reach = 3 * static_cast<long>(std::ceil(window / rolled_shape(tube.chirality).length_per_hexagon));
     Vector3 low = Vector3::Zero(), high = Vector3::Zero();
     double n_low = 0, n_high = 0;
     for (const LabelledAtom& atom : tube.atoms) {
@@ -518,7 +522,7 @@ class Search {
     const auto key = [&](const FoundTube& t) {
       const Vector3 from = t.centre - middle;
       const double a = from.dot(x), b = from.dot(y), r = std::hypot(a, b);
-      return std::make_tuple(std::lround(r / 0.1), std::atan2(b, a), from.dot(way));
+      return std::make_tuple(std::llround(r / 0.1), std::atan2(b, a), from.dot(way));
     };
     std::stable_sort(found_.tubes.begin(), found_.tubes.end(),
                      [&](const FoundTube& a, const FoundTube& b) { return key(a) < key(b); });

@@ -12,15 +12,15 @@
 namespace ropewalk {
 namespace {
 
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> command_words(const std::string& line) {
   std::vector<std::string> words;
   std::istringstream stream(line);
   for (std::string word; stream >> word;) words.push_back(word);
   return words;
 }
 
-// A short-ranged potential does not reach from one tube to the next, and one instance serves all tubes. Any other one is
-// made once for each part, so that it does not count as contact.
+// A short-ranged potential does not reach from one tube to the next, and one instance serves all tubes. Any other
+// one is made once for each part, so that it does not count as contact.
 constexpr double reaches_next_tube = 0.28;  // nm
 
 std::string pair_text(const AtomForces& forces, std::size_t parts) {
@@ -30,8 +30,8 @@ std::string pair_text(const AtomForces& forces, std::size_t parts) {
     for (const std::string& command : potential.commands) text += command + "\n";
     return text;
   }
-  const std::vector<std::string> style = words_of(potential.commands.at(0));
-  const std::vector<std::string> coeff = words_of(potential.commands.at(1));
+  const std::vector<std::string> style = command_words(potential.commands.at(0));
+  const std::vector<std::string> coeff = command_words(potential.commands.at(1));
   std::string own = style[1];
   for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
   const std::size_t instances = potential.cutoff < reaches_next_tube ? 1 : parts;
@@ -39,7 +39,8 @@ std::string pair_text(const AtomForces& forces, std::size_t parts) {
   for (std::size_t p = 0; p < instances; ++p) text += " " + own;
   text += fmt::format(" lj/cut {:.6f}\n", forces.cutoff / angstrom);
   for (std::size_t p = 1; p <= instances; ++p) {
-    text += fmt::format("pair_coeff * * {}", style[1]) + (instances > 1 ? fmt::format(" {}", p) : "") + " " + coeff[3];
+    text +=
+        fmt::format("pair_coeff * * {}", style[1]) + (instances > 1 ? fmt::format(" {}", p) : "") + " " + coeff[3];
     for (std::size_t k = 1; k <= parts; ++k) text += instances == 1 || k == p ? " " + coeff[4] : " NULL";
     text += "\n";
   }
@@ -50,9 +51,9 @@ std::string pair_text(const AtomForces& forces, std::size_t parts) {
 }
 
 void refuse_other_lines(const Potential& potential, const std::string& name) {
-  if (potential.commands.size() == 2 && words_of(potential.commands[0]).size() >= 2 &&
-      words_of(potential.commands[0])[0] == "pair_style") {
-    const std::vector<std::string> coeff = words_of(potential.commands[1]);
+  if (potential.commands.size() == 2 && command_words(potential.commands[0]).size() >= 2 &&
+      command_words(potential.commands[0])[0] == "pair_style") {
+    const std::vector<std::string> coeff = command_words(potential.commands[1]);
     if (coeff.size() == 5 && coeff[0] == "pair_coeff" && coeff[1] == "*" && coeff[2] == "*") return;
   }
   throw InputError({name, 0, "--potential"}, "has lines that several tubes cannot share",
@@ -64,7 +65,7 @@ std::vector<double> part_energies(const std::string& path, std::size_t parts) {
   std::vector<double> energies;
   bool in_block = false;
   for (std::string line; std::getline(lines, line);) {
-    const std::vector<std::string> words = words_of(line);
+    const std::vector<std::string> words = command_words(line);
     if (words.size() != 2 || words[0].front() == '#') continue;
     if (!in_block) {  // its head: the step, and how many lines follow
       in_block = true;
@@ -91,7 +92,8 @@ AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string&
         throw InputError({set.path, 0, "provenance.potential"}, "names no potential of LAMMPS",
                          "give one: --potential tersoff");
       if (!name.empty() && own != name)
-        throw InputError({set.path, 0, "provenance.potential"}, fmt::format("is {}, and that of another set {}", own, name),
+        throw InputError({set.path, 0, "provenance.potential"},
+                         fmt::format("is {}, and that of another set {}", own, name),
                          "choose one: --potential " + name);
       name = own;
     }

@@ -17,13 +17,13 @@ struct AtomForces {
   Potential potential;
   double epsilon = 0, sigma = 0, cutoff = 0;  // eV, nm
 };
-// Of sets that agree on the Lennard-Jones law. `potential`: a name or a file of pair_style and pair_coeff lines; empty:
-// that of the sets. Throws InputError where they name none, or several.
+// Of sets that agree on the Lennard-Jones law. `potential`: a name or a file of pair_style and pair_coeff lines;
+// empty: that of the sets. Throws InputError where they name none, or several.
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential);
 
 // LAMMPS input that reads STEM.data, in which each part of a tube is a type. It writes STEM-relaxed.data, and the
-// energies of all parts before and after to STEM-before.txt and STEM-after.txt. `held`: ranges of atoms that stay where
-// they are.
+// energies of all parts before and after to STEM-before.txt and STEM-after.txt. `held`: ranges of atoms that stay
+// where they are.
 std::string relax_input(const std::string& stem, const AtomForces& forces, std::size_t parts,
                         const std::vector<AtomRange>& held);
 

@@ -22,11 +22,12 @@ TubeReference reference_of(const ParameterSet& set) {
   const auto off = [](double value, double of_sheet) { return std::fabs(value / of_sheet - 1) > slack; };
   if (!set.chirality.valid() || off(set.radius, tube_radius(set.chirality)) ||
       off(set.atoms_per_length, atoms_per_length(set.chirality)))
-    throw InputError({set.path, 0, "meta.chirality"},
-                     fmt::format("is ({},{}), and radius and atoms per length are not those of such a tube",
-                                 set.chirality.n, set.chirality.m),
-                     "take a set that ropewalk calibrate made of a carbon nanotube: elements of other things have no "
-                     "atoms here");
+    throw InputError(
+        {set.path, 0, "meta.chirality"},
+        fmt::format("is ({},{}), and radius and atoms per length are not those of such a tube", set.chirality.n,
+                    set.chirality.m),
+        "take a set that ropewalk calibrate made of a carbon nanotube: elements of other things have no "
+        "atoms here");
   TubeReference out;
   out.chirality = set.chirality;
   out.shape.radius = set.radius;

@@ -90,8 +90,8 @@ void print_comparison(const std::vector<PartComparison>& parts) {
     sum.placed += p.placed;
     sum.relaxed += p.relaxed;
   }
-  fmt::print("{:>5} {:>9} {:>8} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g}\n", "all", "", sum.atoms, sum.bonds,
-             sum.contact, sum.bonds + sum.contact, sum.placed, sum.relaxed);
+  fmt::print("{:>5} {:>9} {:>8} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g}\n", "all", "", sum.atoms,
+             sum.bonds, sum.contact, sum.bonds + sum.contact, sum.placed, sum.relaxed);
 }
 
 nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {

@@ -1,10 +1,11 @@
 // `coarsen`: atoms as elements.
+#include "exchange/coarsen.hpp"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "exchange/coarsen.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "run/terminal_listener.hpp"
@@ -37,7 +38,8 @@ nlohmann::ordered_json as_json(const Coarsening& coarse) {
 }
 
 void tell_tubes(const Coarsening& coarse) {
-  for (std::size_t t = 0; t < coarse.tubes().size(); ++t) fmt::print("tube {}: {}\n", t, words_of(coarse.tubes()[t]));
+  for (std::size_t t = 0; t < coarse.tubes().size(); ++t)
+    fmt::print("tube {}: {}\n", t, words_of(coarse.tubes()[t]));
   if (coarse.loose() > 0) fmt::print("{} carbon atoms in no tube\n", coarse.loose());
   if (coarse.foreign() > 0) fmt::print("{} atoms of other species\n", coarse.foreign());
 }

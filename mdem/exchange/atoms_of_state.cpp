@@ -70,8 +70,8 @@ void add_model_energies(const AtomicState& s, std::vector<PartComparison>& parts
 }
 
 // Energy (eV) of the atoms of a part where the tube is straight and at rest, relaxed alike.
-double energy_at_rest(const AtomicState& s, const TubePart& part, const AtomForces& forces, const std::string& folder,
-                      const LammpsOptions& options) {
+double energy_at_rest(const AtomicState& s, const TubePart& part, const AtomForces& forces,
+                      const std::string& folder, const LammpsOptions& options) {
   AtomicState rest;
   rest.sets = s.sets;
   rest.topology.types = s.topology.types;
@@ -99,9 +99,9 @@ AtomicState state_of_frame(const RunDirectory& dir, long frame) {
   const auto count = static_cast<long>(frames->count(prepared.topology));
   const long wanted = frame < 0 ? count + frame : frame;
   if (wanted < 0 || wanted >= count)
-    throw InputError({dir.frames(), 0, "--frame"}, fmt::format("there is no frame {}: there are {}", frame, count),
-                     count > 0 ? fmt::format("frames run from 0 to {}; -1 is the last", count - 1)
-                               : "let the run write one");
+    throw InputError(
+        {dir.frames(), 0, "--frame"}, fmt::format("there is no frame {}: there are {}", frame, count),
+        count > 0 ? fmt::format("frames run from 0 to {}; -1 is the last", count - 1) : "let the run write one");
   frames->seek(static_cast<std::size_t>(wanted));
   StoredFrame stored;
   frames->next(prepared.topology, stored);
@@ -137,8 +137,7 @@ LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit) {
     std::string passed;
     for (const LimitRecord& r : limits)
       if (r.passed) passed += (passed.empty() ? "" : ", ") + r.key;
-    const std::string remedy =
-        passed.empty() ? "no limit was: name a frame by --frame" : "passed were: " + passed;
+    const std::string remedy = passed.empty() ? "no limit was: name a frame by --frame" : "passed were: " + passed;
     if (known == limits.end())
       throw InputError({dir.limits(), 0, "--at"}, fmt::format("there is no limit \"{}\"", limit), remedy);
     throw InputError({dir.limits(), 0, "--at"}, fmt::format("{} was not passed", limit), remedy);
@@ -160,7 +159,7 @@ LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit) {
     throw InputError({dir.frames(), 0, "--at"}, "has no frame before the limit was passed",
                      "run it again with a shorter run.frames_every_ps");
   const std::string at = place_words(*known);
-  place.words = fmt::format("{} was passed {}{}", known->key, since_words(*known), at.empty() ? "" : ", at " + at);
+  place.words = fmt::format("{} is passed {}{}", known->key, since_words(*known), at.empty() ? "" : ": " + at);
   return place;
 }
 
@@ -178,9 +177,11 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
     bool before = false;
     for (int e = 0; e < s.topology.length_of(t); ++e) {
       const double along = (e + 0.5) * a;
-      bool wanted = (!selection.from_nm || along >= *selection.from_nm) && (!selection.to_nm || along <= *selection.to_nm);
+      bool wanted =
+          (!selection.from_nm || along >= *selection.from_nm) && (!selection.to_nm || along <= *selection.to_nm);
       if (wanted && selection.around_tube >= 0) {
-        const Vector3 place = s.state.position[index_of(s.topology, selection.around_tube, selection.around_element)];
+        const Vector3 place =
+            s.state.position[index_of(s.topology, selection.around_tube, selection.around_element)];
         wanted = (s.state.position[index_of(s.topology, t, e)] - place).norm() <= 0.5 * selection.around_nm;
       }
       if (wanted && before)
@@ -243,8 +244,8 @@ std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::
     std::vector<char> held;
     for (int e = parts[p].begin; e < parts[p].end; ++e)
       held.push_back(s.held[index_of(s.topology, parts[p].tube, e)]);
-    const std::tuple key(s.topology.tube_type[static_cast<std::size_t>(parts[p].tube)], parts[p].begin, parts[p].end,
-                         held);
+    const std::tuple key(s.topology.tube_type[static_cast<std::size_t>(parts[p].tube)], parts[p].begin,
+                         parts[p].end, held);
     if (at_rest.find(key) == at_rest.end())
       at_rest[key] = energy_at_rest(s, parts[p], forces, work.path(), options);
     out[p].placed = found[p].before - at_rest[key];

@@ -32,22 +32,22 @@ struct LimitPlace {
   long frame = 0;
   double before_ps = 0;  // how long before the limit was passed the frame is
   int tube = -1, element = -1;
-  std::string words;  // "wall_twist was passed at 243 ps, at tube 3, element 12"
+  std::string words;  // "wall_twist is passed from 243 ps on: tube 3, element 12"
 };
 LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit);
 
 // Which elements are wanted.
 struct AtomSelection {
-  std::vector<int> tubes;                       // empty: all
-  std::optional<double> from_nm, to_nm;         // along each tube at rest, from its first end
-  int around_tube = -1, around_element = -1;    // those near this element; -1: anywhere
-  double around_nm = 12;                        // the diameter of that place
+  std::vector<int> tubes;                     // empty: all
+  std::optional<double> from_nm, to_nm;       // along each tube at rest, from its first end
+  int around_tube = -1, around_element = -1;  // those near this element; -1: anywhere
+  double around_nm = 12;                      // the diameter of that place
 };
 // Stretches of tubes. Throws InputError where nothing is left.
 std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& selection);
 
-// Energies of a part (eV): of the model, and of its atoms less those of the same atoms of a straight tube at rest that is
-// relaxed alike.
+// Energies of a part (eV): of the model, and of its atoms less those of the same atoms of a straight tube at rest
+// that is relaxed alike.
 struct PartComparison {
   TubePart part;
   long atoms = 0;

@@ -26,9 +26,9 @@
 namespace ropewalk {
 namespace {
 
-constexpr double farthest = 0.08;      // nm: an atom farther from its place has no site
-constexpr double emptiest = 0.5;       // of the sites of an element that must have an atom
-constexpr double most_misfits = 0.2;   // of the sites of a tube
+constexpr double farthest = 0.08;     // nm: an atom farther from its place has no site
+constexpr double emptiest = 0.5;      // of the sites of an element that must have an atom
+constexpr double most_misfits = 0.2;  // of the sites of a tube
 constexpr int fewest_elements = 2;
 
 // The largest distance of two rows that follow one another, in thirds of a hexagon.
@@ -39,8 +39,8 @@ long largest_gap(Chirality c) {
 
 // Whole elements below `top` (thirds of a hexagon), where the row above it would follow.
 int elements_below(const TubeReference& reference, long top, double element_length) {
-  const double end = static_cast<double>(top - 1 + largest_gap(reference.chirality)) / 3 *
-                     reference.shape.length_per_hexagon;
+  const double end =
+      static_cast<double>(top - 1 + largest_gap(reference.chirality)) / 3 * reference.shape.length_per_hexagon;
   return static_cast<int>(std::floor(end / element_length + 1e-6));
 }
 
@@ -51,10 +51,13 @@ std::string shipped_set_of(Chirality c, const std::string& file) {
   const std::string begin = fmt::format("cnt-{}-{}-", c.n, c.m);
   std::string found;
   for (const std::string& name : shipped_sets())
-    if (name.rfind(begin, 0) == 0 && name != begin + "paper" && (found.empty() || name == begin + "tersoff")) found = name;
+    if (name.rfind(begin, 0) == 0 && name != begin + "paper" && (found.empty() || name == begin + "tersoff"))
+      found = name;
   if (found.empty())
-    throw InputError({file, 0, "--parameters"}, fmt::format("it has a {} tube, and no shipped set is of these", chirality_name(c)),
-                     fmt::format("make one: ropewalk calibrate --chirality {},{}; and give it by --parameters", c.n, c.m));
+    throw InputError(
+        {file, 0, "--parameters"},
+        fmt::format("it has a {} tube, and no shipped set is of these", chirality_name(c)),
+        fmt::format("make one: ropewalk calibrate --chirality {},{}; and give it by --parameters", c.n, c.m));
   return found;
 }
 
@@ -62,7 +65,8 @@ constexpr std::array<OutputColumn, 7> columns_of_sections = {{
     {"tube", "", "tube, from 0"},
     {"element", "", "element of the tube, from 0"},
     {"radius_nm", "nm", "mean radius of its atoms"},
-    {"ovality_nm", "nm", "amplitude of the radius twice around: half of the difference of the widest and the narrowest radius"},
+    {"ovality_nm", "nm",
+     "amplitude of the radius twice around: half of the difference of the widest and the narrowest radius"},
     {"shear_x_rad", "rad", "angle of the centre line against the normal of the section, along the body's x"},
     {"shear_y_rad", "rad", "along the body's y"},
     {"atoms", "", "atoms of the element over the sites that it has"},
@@ -73,8 +77,9 @@ constexpr std::array<OutputColumn, 7> columns_of_sections = {{
 std::vector<OutputColumn> section_columns() { return {columns_of_sections.begin(), columns_of_sections.end()}; }
 
 std::string words_of(const CoarseTube& t) {
-  std::string text = fmt::format("{}, {} elements of {} atoms, mean radius {:.4f} nm, atoms {:.4f} nm from their places",
-                                 chirality_name(t.chirality), t.elements, t.atoms, t.radius, t.misfit);
+  std::string text =
+      fmt::format("{}, {} elements of {} atoms, mean radius {:.4f} nm, atoms {:.4f} nm from their places",
+                  chirality_name(t.chirality), t.elements, t.atoms, t.radius, t.misfit);
   const auto add = [&](long count, const char* one, const char* many) {
     if (count > 0) text += fmt::format(", {} {}", count, count == 1 ? one : many);
   };
@@ -131,9 +136,10 @@ void Coarsening::choose_sets() {
       } else {
         const auto own = std::find_if(given.begin(), given.end(), same);
         if (own == given.end())
-          throw InputError({files_.file(), 0, "--parameters"},
-                           fmt::format("it has a {} tube, and none of the sets is of these", chirality_name(tube.chirality)),
-                           fmt::format("make one: ropewalk calibrate --chirality {},{}", tube.chirality.n, tube.chirality.m));
+          throw InputError(
+              {files_.file(), 0, "--parameters"},
+              fmt::format("it has a {} tube, and none of the sets is of these", chirality_name(tube.chirality)),
+              fmt::format("make one: ropewalk calibrate --chirality {},{}", tube.chirality.n, tube.chirality.m));
         sets_.push_back(*own);
       }
       at = sets_.end() - 1;
@@ -157,25 +163,27 @@ void Coarsening::fit_first() {
     const TubeReference reference = reference_of(sets_[static_cast<std::size_t>(topology_.tube_type[t])]);
     State state;
     std::optional<ElementFit> fit;
-    // Atoms of a cap or beside a defect may have a site that they do not stand on: taken out, and the rest fitted again.
+    // Atoms of a cap or beside a defect may have a site that they do not stand on: taken out, and the rest fitted
+    // again.
     for (int round = 0; round < 4; ++round) {
       const int elements = elements_below(reference, tube.top, a);
       if (elements < fewest_elements)
-        throw InputError({files_.file(), 0, ""},
-                         fmt::format("a {} tube is {:.3g} nm long, shorter than {} elements of {:.4g} nm",
-                                     chirality_name(tube.chirality),
-                                     static_cast<double>(tube.top) / 3 * reference.shape.length_per_hexagon,
-                                     fewest_elements, a),
-                         "take shorter ones by --element-length-nm");
+        throw InputError(
+            {files_.file(), 0, ""},
+            fmt::format("a {} tube is {:.3g} nm long, shorter than {} elements of {:.4g} nm",
+                        chirality_name(tube.chirality),
+                        static_cast<double>(tube.top) / 3 * reference.shape.length_per_hexagon, fewest_elements, a),
+            "take shorter ones by --element-length-nm");
       fit.emplace(reference, a, elements, tube.atoms);
       for (int e = 0; e < elements; ++e)
         if (fit->filled(e) < emptiest) {
           const Vector3 at = tube.centre;
-          throw InputError({files_.file(), 0, ""},
-                           fmt::format("element {} of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm has {:.0f} % of its "
-                                       "atoms",
-                                       e, chirality_name(tube.chirality), at.x(), at.y(), at.z(), 100 * fit->filled(e)),
-                           "take longer elements by --element-length-nm, or a tube with fewer defects");
+          throw InputError(
+              {files_.file(), 0, ""},
+              fmt::format("element {} of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm has {:.0f} % of its "
+                          "atoms",
+                          e, chirality_name(tube.chirality), at.x(), at.y(), at.z(), 100 * fit->filled(e)),
+              "take longer elements by --element-length-nm, or a tube with fewer defects");
         }
       state = State(static_cast<std::size_t>(elements));
       fit->fit(positions_, state, 0);
@@ -193,17 +201,19 @@ void Coarsening::fit_first() {
     const long sites = SiteRows(tube.chirality).sites_between(0, tube.top);
     const double missing = 1 - static_cast<double>(tube.atoms.size()) / static_cast<double>(sites);
     if (missing > most_misfits)
-      throw InputError({files_.file(), 0, ""},
-                       fmt::format("{:.0f} % of the sites of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm have no atom",
-                                   100 * missing, chirality_name(tube.chirality), tube.centre.x(), tube.centre.y(),
-                                   tube.centre.z()),
-                       "such a tube is no chain of elements: minimise it, or take it out");
+      throw InputError(
+          {files_.file(), 0, ""},
+          fmt::format("{:.0f} % of the sites of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm have no atom",
+                      100 * missing, chirality_name(tube.chirality), tube.centre.x(), tube.centre.y(),
+                      tube.centre.z()),
+          "such a tube is no chain of elements: minimise it, or take it out");
     // Of the equal parts of a turn, the one that turns the first element least.
     const int g = std::gcd(tube.chirality.n, tube.chirality.m);
     int best = 0;
     double most = -1;
     for (int k = 0; k < g; ++k) {
-      const Quaternion q = state.orientation[0] * Quaternion(Eigen::AngleAxisd(2 * units::pi * k / g, Vector3::UnitZ()));
+      const Quaternion q =
+          state.orientation[0] * Quaternion(Eigen::AngleAxisd(2 * units::pi * k / g, Vector3::UnitZ()));
       if (std::fabs(q.w()) > most + 1e-9) {
         most = std::fabs(q.w());
         best = k;
@@ -227,7 +237,8 @@ void Coarsening::fit_first() {
     tubes_.push_back(told);
   }
   if (topology_.elements() > max_elements)
-    throw InputError({files_.file(), 0, ""}, fmt::format("makes more than {} elements", max_elements), "take fewer atoms");
+    throw InputError({files_.file(), 0, ""}, fmt::format("makes more than {} elements", max_elements),
+                     "take fewer atoms");
   fit();
   const std::vector<SectionShape> all = shapes();
   for (std::size_t t = 0; t < tubes_.size(); ++t) {
@@ -279,7 +290,8 @@ bool Coarsening::next() {
 
 namespace {
 
-std::string scene_text(const Coarsening& coarse, const CoarsenSettings& settings, const std::vector<std::string>& sets) {
+std::string scene_text(const Coarsening& coarse, const CoarsenSettings& settings,
+                       const std::vector<std::string>& sets) {
   const Topology& topology = coarse.topology();
   std::string text = "# Elements that were taken from atoms: this scene was not run.\n";
   text += fmt::format("format = \"{}\"\nname = \"atoms of {}\"\n", scene_format,
@@ -291,7 +303,8 @@ std::string scene_text(const Coarsening& coarse, const CoarsenSettings& settings
     for (std::size_t k = 0; k < sets.size(); ++k) text += fmt::format("{}\"{}\"", k ? ", " : "", sets[k]);
     text += fmt::format("]\ntube_types = [{}]\n", fmt::join(topology.tube_type, ", "));
   }
-  text += fmt::format("element_length_nm = {}\n\n[state]\nfile = \"state.csv\"\n\n", topology.types.front().element_length);
+  text += fmt::format("element_length_nm = {}\n\n[state]\nfile = \"state.csv\"\n\n",
+                      topology.types.front().element_length);
   return text + "[run]\nduration_ps = 1\n";
 }
 
@@ -311,12 +324,13 @@ class Sections {
   std::string csv(const Topology& topology, const std::vector<double>& filled) const {
     std::string text = column_names(columns_of_sections) + "\n";
     for (int t = 0; t < topology.tubes(); ++t)
-      for (int e = topology.tube_begin[static_cast<std::size_t>(t)]; e < topology.tube_begin[static_cast<std::size_t>(t) + 1];
-           ++e) {
+      for (int e = topology.tube_begin[static_cast<std::size_t>(t)];
+           e < topology.tube_begin[static_cast<std::size_t>(t) + 1]; ++e) {
         const SectionShape& s = sums_[static_cast<std::size_t>(e)];
         text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", t,
-                            e - topology.tube_begin[static_cast<std::size_t>(t)], s.radius / frames_, s.ovality / frames_,
-                            s.shear_x / frames_, s.shear_y / frames_, filled[static_cast<std::size_t>(e)]);
+                            e - topology.tube_begin[static_cast<std::size_t>(t)], s.radius / frames_,
+                            s.ovality / frames_, s.shear_x / frames_, s.shear_y / frames_,
+                            filled[static_cast<std::size_t>(e)]);
       }
     return text;
   }
@@ -325,18 +339,6 @@ class Sections {
   std::vector<SectionShape> sums_;
   double frames_ = 0;
 };
-
-double kinetic_energy(const Topology& topology, const State& state) {
-  double sum = 0;
-  for (int t = 0; t < topology.tubes(); ++t)
-    for (int e = topology.tube_begin[static_cast<std::size_t>(t)]; e < topology.tube_begin[static_cast<std::size_t>(t) + 1];
-         ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      sum += 0.5 * topology.type_of(t).mass * state.velocity[i].squaredNorm() +
-             0.5 * topology.type_of(t).inertia * state.angular_velocity[i].squaredNorm();
-    }
-  return sum;
-}
 
 }  // namespace
 
@@ -371,7 +373,8 @@ CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, 
   account.time_step = prepared.time_step;
   do {
     const State& state = coarse.state();
-    const Forces forces = forces_of(prepared.topology, prepared.interaction, state, false, {settings.files.back(), 0, ""});
+    const Forces forces =
+        forces_of(prepared.topology, prepared.interaction, state, false, {settings.files.back(), 0, ""});
     account.potential = forces.energy;
     account.kinetic = coarse.has_velocities() ? kinetic_energy(prepared.topology, state) : 0;
     if (done.frames == 0) {

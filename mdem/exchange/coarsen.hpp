@@ -34,15 +34,15 @@ std::string words_of(const CoarseTube& tube);
 // The elements of a trajectory, frame by frame.
 class Coarsening {
  public:
-  // Reads the first frame and finds its tubes. Throws InputError where there is none, a tube is too short, or more than
-  // a fifth of its atoms has no place on its lattice.
+  // Reads the first frame and finds its tubes. Throws InputError where there is none, a tube is too short, or more
+  // than a fifth of its atoms has no place on its lattice.
   explicit Coarsening(const CoarsenSettings& settings);
 
   const std::vector<ParameterSet>& sets() const { return sets_; }
   const Topology& topology() const { return topology_; }  // types with their length and radius alone
   const std::vector<CoarseTube>& tubes() const { return tubes_; }
-  long loose() const { return found_.loose; }      // carbon atoms in no tube
-  long foreign() const { return foreign_; }        // atoms of other species
+  long loose() const { return found_.loose; }  // carbon atoms in no tube
+  long foreign() const { return foreign_; }    // atoms of other species
   bool states_time() const { return files_.states_time(); }
   bool cut_off() const { return files_.cut_off(); }
 
@@ -79,8 +79,8 @@ struct CoarseRun {
   double time = 0;     // ps, of the last frame
   std::string passed;  // limits, in words; empty: none
 };
-// Makes the directory of a run with log, frames, limits, sections.csv and its last state. No checkpoint: a scene goes on
-// from final.csv.
+// Makes the directory of a run with log, frames, limits, sections.csv and its last state. No checkpoint: a scene
+// goes on from final.csv.
 CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, const RunDirectory& to, bool force,
                            RunListener& listener);
 std::vector<OutputColumn> section_columns();

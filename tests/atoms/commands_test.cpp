@@ -65,8 +65,8 @@ TEST_F(Bridge, ARunBecomesAtomsAndTheAtomsTheSameState) {
       const double d = (before.position[i] - after.position[j]).norm();
       if (d > nearest) continue;
       nearest = d;
-      const double angle = (before.orientation[i].conjugate() * after.orientation[j]).angularDistance(
-          Quaternion::Identity());
+      const double angle =
+          (before.orientation[i].conjugate() * after.orientation[j]).angularDistance(Quaternion::Identity());
       turn = std::fabs(std::remainder(angle, 2 * units::pi / 5));
     }
     EXPECT_LT(nearest, 1e-3);

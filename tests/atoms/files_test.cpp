@@ -1,6 +1,4 @@
 // Files of atoms as LAMMPS, ASE and others write them, and files that are damaged.
-#include "atoms/atom_files.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "atoms/atom_files.hpp"
 #include "atoms/atom_writer.hpp"
 #include "atoms/support.hpp"
 #include "model/error.hpp"
@@ -68,12 +67,14 @@ TEST_F(AtomFile, DumpIsSortedScaledAndTilted) {
 }
 
 TEST_F(AtomFile, DataFileTellsTheSpeciesOfADump) {
-  const std::string data = file("a.data",
-                                "title\n\n2 atoms\n2 atom types\n\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo zhi\n\n"
-                                "Masses\n\n1 1.008\n2 12.011 # C\n\nAtoms # full\n\n1 1 2 0.0 1 2 3\n2 1 1 0.0 4 5 6\n");
-  const std::string dump = file("a.dump",
-                                "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 "
-                                "10\nITEM: ATOMS id type x y z\n2 1 4 5 6\n1 2 1 2 3\n");
+  const std::string data =
+      file("a.data",
+           "title\n\n2 atoms\n2 atom types\n\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo zhi\n\n"
+           "Masses\n\n1 1.008\n2 12.011 # C\n\nAtoms # full\n\n1 1 2 0.0 1 2 3\n2 1 1 0.0 4 5 6\n");
+  const std::string dump =
+      file("a.dump",
+           "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 "
+           "10\nITEM: ATOMS id type x y z\n2 1 4 5 6\n1 2 1 2 3\n");
   EXPECT_EQ(first({data}).carbon, (std::vector<char>{1, 0}));
   EXPECT_EQ(first({dump, data}).carbon, (std::vector<char>{1, 0}));
   EXPECT_NEAR((first({data}).positions[1] - Vector3(0.4, 0.5, 0.6)).norm(), 0, 1e-12);
@@ -81,9 +82,10 @@ TEST_F(AtomFile, DataFileTellsTheSpeciesOfADump) {
 }
 
 TEST_F(AtomFile, ExtendedXyzHasABoxTimeAndColumnsOfItsOwn) {
-  const std::string xyz = file("a.xyz",
-                               "2\nLattice=\"10 0 0 2 10 0 0 0 20\" Properties=tag:I:1:species:S:1:pos:R:3 pbc=\"T F T\" "
-                               "Time=3.5\n4 C 1 2 3\n5 O 4 5 6\n");
+  const std::string xyz =
+      file("a.xyz",
+           "2\nLattice=\"10 0 0 2 10 0 0 0 20\" Properties=tag:I:1:species:S:1:pos:R:3 pbc=\"T F T\" "
+           "Time=3.5\n4 C 1 2 3\n5 O 4 5 6\n");
   const AtomFrame frame = first({xyz});
   EXPECT_NEAR(frame.time, 3.5, 1e-12);
   EXPECT_NEAR((frame.box.edges.col(1) - Vector3(0.2, 1, 0)).norm(), 0, 1e-12);
@@ -100,20 +102,24 @@ TEST_F(AtomFile, LeavesOutAFrameThatIsCutOff) {
   EXPECT_TRUE(files.next(read));
   EXPECT_FALSE(files.next(read));
   EXPECT_TRUE(files.cut_off());
-  EXPECT_NE(refusal({file("b.xyz", "2\ncomment\nC 0 0 0\n")}).find("ends within its first frame"), std::string::npos);
+  EXPECT_NE(refusal({file("b.xyz", "2\ncomment\nC 0 0 0\n")}).find("ends within its first frame"),
+            std::string::npos);
 }
 
 TEST_F(AtomFile, DamagedFilesNameTheLine) {
   EXPECT_NE(refusal({file("a.xyz", "2\ncomment\nC 0 0 0\nC 1 x 1\n")}).find("a.xyz:4: pos: \"x\" is not a number"),
             std::string::npos);
   EXPECT_NE(refusal({file("a.pdb", "ATOM 1\n")}).find("no file of atoms"), std::string::npos);
-  const std::string head = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n";
+  const std::string head =
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n";
   EXPECT_NE(refusal({file("b.dump", head + "ITEM: ATOMS type x y z\n1 0 0 0\n1 1 1 1\n")}).find("no column id"),
             std::string::npos);
-  EXPECT_NE(refusal({file("c.dump", head + "ITEM: ATOMS id type x y z\n1 1 0 0 0\n1 1 1 1 1\n")}).find("comes twice"),
-            std::string::npos);
-  EXPECT_NE(refusal({file("d.data", "t\n\n2 atoms\n1 atom types\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nAtoms # "
-                                    "atomic\n\n1 1 0 0 0\n")})
+  EXPECT_NE(
+      refusal({file("c.dump", head + "ITEM: ATOMS id type x y z\n1 1 0 0 0\n1 1 1 1 1\n")}).find("comes twice"),
+      std::string::npos);
+  EXPECT_NE(refusal({file("d.data",
+                          "t\n\n2 atoms\n1 atom types\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nAtoms # "
+                          "atomic\n\n1 1 0 0 0\n")})
                 .find("ends within Atoms"),
             std::string::npos);
 }

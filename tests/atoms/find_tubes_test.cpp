@@ -16,7 +16,8 @@ using namespace test;
 
 std::string name(Chirality c) { return "(" + std::to_string(c.n) + "," + std::to_string(c.m) + ")"; }
 
-// The places that the sites of a tube have on the ideal lattice, moved onto its atoms as one body: how far off they are.
+// The places that the sites of a tube have on the ideal lattice, moved onto its atoms as one body: how far off they
+// are.
 double misfit(const FoundTubes& found, const FoundTube& tube) {
   const TubeShape shape = rolled_shape(tube.chirality);
   Eigen::Matrix3Xd ideal(3, tube.atoms.size()), real(3, tube.atoms.size());
@@ -25,9 +26,9 @@ double misfit(const FoundTubes& found, const FoundTube& tube) {
     real.col(static_cast<Eigen::Index>(k)) = found.positions[tube.atoms[k].atom];
   }
   const Eigen::Matrix4d move = Eigen::umeyama(ideal, real, false);
-  return std::sqrt(((move.topLeftCorner<3, 3>() * ideal).colwise() + move.topRightCorner<3, 1>().eval() - real)
-                       .squaredNorm() /
-                   static_cast<double>(tube.atoms.size()));
+  return std::sqrt(
+      ((move.topLeftCorner<3, 3>() * ideal).colwise() + move.topRightCorner<3, 1>().eval() - real).squaredNorm() /
+      static_cast<double>(tube.atoms.size()));
 }
 
 TEST(FindTubes, KnowsEveryChiralityAndItsHand) {
@@ -88,7 +89,8 @@ TEST(FindTubes, NamesATurnedBond) {
 TEST(FindTubes, TellsTubesApartThatTouch) {
   const Chirality a{10, 10}, b{8, 2};
   std::vector<Vector3> atoms = lattice_atoms(a, 4);
-  for (const Vector3& x : lattice_atoms(b, 4)) atoms.push_back(x + Vector3(tube_radius(a) + tube_radius(b) + 0.3, 0, 0));
+  for (const Vector3& x : lattice_atoms(b, 4))
+    atoms.push_back(x + Vector3(tube_radius(a) + tube_radius(b) + 0.3, 0, 0));
   // And one inside the other.
   for (const Vector3& x : lattice_atoms({5, 5}, 4)) atoms.push_back(x);
   const FoundTubes found = found_in(scrambled(atoms, 0.005, 4));

@@ -58,8 +58,9 @@ TEST_P(RoundTrip, GivesTheElementsUpToTheLimitsOfTheSet) {
   for (const double part : {0.0, 0.5, 1.0}) {
     const double twist = part * set.validity.twist_collapse / set.radius, bend = part * set.validity.kink_curvature,
                  strain = part * set.validity.stretch;
-    for (const RodShape& shape : {RodShape{strain, 0, 0}, RodShape{-strain, 0, 0}, RodShape{0, twist, 0},
-                                  RodShape{0, -twist, 0}, RodShape{0, 0, bend}, RodShape{0.5 * strain, twist, bend}}) {
+    for (const RodShape& shape :
+         {RodShape{strain, 0, 0}, RodShape{-strain, 0, 0}, RodShape{0, twist, 0}, RodShape{0, -twist, 0},
+          RodShape{0, 0, bend}, RodShape{0.5 * strain, twist, bend}}) {
       const Elements before = rod(8, a, shape);
       const Difference d = difference(before.state, found_again(before, reference, 7), g);
       EXPECT_LT(d.distance, 1e-3) << "at " << part << " of the limits";
@@ -79,8 +80,8 @@ TEST(RoundTripOfElements, GivesElementsThatAreAllDifferent) {
   std::normal_distribution<double> normal;
   Elements before = rod(12, set.element_length, {});
   for (std::size_t i = 0; i < before.state.size(); ++i) {
-    before.state.position.set(i, before.state.position[i] +
-                                     0.02 * Vector3(normal(random), normal(random), normal(random)));
+    before.state.position.set(
+        i, before.state.position[i] + 0.02 * Vector3(normal(random), normal(random), normal(random)));
     Vector3 turn = 0.03 * Vector3(normal(random), normal(random), normal(random));
     before.state.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())));
   }
@@ -111,15 +112,16 @@ TEST(AtomsOfElements, CountWithoutPlacingThem) {
     all.for_each([&](const PlacedAtom&) { ++placed; });
     EXPECT_EQ(all.count(), placed);
     EXPECT_EQ(parts.count(), placed) << "each atom belongs to one element";
-    EXPECT_NEAR(static_cast<double>(placed), set.atoms_per_length * 9 * set.element_length, 2 * set.chirality.n + 2);
+    EXPECT_NEAR(static_cast<double>(placed), set.atoms_per_length * 9 * set.element_length,
+                2 * set.chirality.n + 2);
   }
 }
 
-// Bonds of a bent, twisted and stretched tube are near those at rest: no atom is misplaced at the border of elements.
+// Bonds of a bent, twisted and stretched tube are near those at rest: no atom is misplaced at the border of
+// elements.
 TEST(AtomsOfElements, KeepTheLengthsOfBonds) {
   const ParameterSet set = shipped("cnt-12-6-tersoff");
-  const std::vector<Vector3> atoms =
-      atoms_of(rod(6, set.element_length, {0.01, 0.02, 0.05}), reference_of(set));
+  const std::vector<Vector3> atoms = atoms_of(rod(6, set.element_length, {0.01, 0.02, 0.05}), reference_of(set));
   for (std::size_t i = 0; i < atoms.size(); i += 5) {
     int bonds = 0;
     for (std::size_t j = 0; j < atoms.size(); ++j) {

@@ -16,7 +16,8 @@ namespace ropewalk::test {
 
 inline ParameterSet shipped(const std::string& name) { return read_parameters(find_parameters(name, "")); }
 
-// A uniform state of a rod: chords strained, axes and section wound by `twist` (rad/nm), bent to `curvature` (1/nm).
+// A uniform state of a rod: chords strained, axes and section wound by `twist` (rad/nm), bent to `curvature`
+// (1/nm).
 struct RodShape {
   double strain = 0, twist = 0, curvature = 0;
 };
@@ -66,8 +67,7 @@ inline std::vector<Vector3> scrambled(std::vector<Vector3> atoms, double noise, 
   Quaternion turn(normal(random), normal(random), normal(random), normal(random));
   turn.normalize();
   const Vector3 shift(normal(random), normal(random), normal(random));
-  for (Vector3& x : atoms)
-    x = turn * x + shift + noise * Vector3(normal(random), normal(random), normal(random));
+  for (Vector3& x : atoms) x = turn * x + shift + noise * Vector3(normal(random), normal(random), normal(random));
   std::shuffle(atoms.begin(), atoms.end(), random);
   return atoms;
 }

@@ -80,8 +80,8 @@ TEST(Fluctuations, FindTheStiffnessesOfDrawnBonds) {
   EXPECT_LT(f.static_part, 0.02);
 }
 
-// Noise of the elements, as of means over few atoms, adds the same variance to every window: the rod keeps its stiffness,
-// and the windows say that they do not agree.
+// Noise of the elements, as of means over few atoms, adds the same variance to every window: the rod keeps its
+// stiffness, and the windows say that they do not agree.
 TEST(Fluctuations, LeaveOutTheNoiseOfElements) {
   const Fluctuation f = drawn(4000, 2, 0.5 * std::sqrt(kT * a / 2500));
   EXPECT_LT(f.windows[0].EI_x.value, 0.75 * 2500);
@@ -105,8 +105,8 @@ TEST(Fluctuations, NeedFramesAndBonds) {
   EXPECT_THROW(single.evaluate(room), std::invalid_argument);
 }
 
-// 200 chains of this program at 300 K: their own stiffness lies within the standard error in 68 % of them, within two
-// standard errors of that share, 6.6 %. The seed was fixed before the first run.
+// 200 chains of this program at 300 K: their own stiffness lies within the standard error in 68 % of them, within
+// two standard errors of that share, 6.6 %. The seed was fixed before the first run.
 TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
   constexpr int chains = 200, elements = 10;
   Topology topology;
@@ -132,7 +132,8 @@ TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
   for (int f = 0; f < 96; ++f) {
     simulation.steps(150);
     for (int c = 0; c < chains; ++c) {
-      sums[static_cast<std::size_t>(c)].add_chain(simulation.state(), static_cast<std::size_t>(c * elements), elements);
+      sums[static_cast<std::size_t>(c)].add_chain(simulation.state(), static_cast<std::size_t>(c * elements),
+                                                  elements);
       sums[static_cast<std::size_t>(c)].end_frame();
     }
   }
@@ -140,7 +141,9 @@ TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
   for (const FluctuationSums& sum : sums) {
     const Fluctuation f = sum.evaluate(room);
     const RodStiffness& k = f.windows.front();
-    const auto covers = [](const Measured& m, double is) { return std::fabs(m.value - is) < m.standard_error ? 1 : 0; };
+    const auto covers = [](const Measured& m, double is) {
+      return std::fabs(m.value - is) < m.standard_error ? 1 : 0;
+    };
     EA += covers(k.EA, type.bond.stretch);
     EI += covers(k.EI_x, type.bond.bend);
     GJ += covers(k.GJ, type.bond.twist);
