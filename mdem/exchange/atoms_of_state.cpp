@@ -201,26 +201,23 @@ WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& p
   const AtomFormat format = atom_format_of(path);
   const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts);
   WrittenAtoms out;
-  out.ranges = write_atoms(path, format, atoms, s.title, s.state.time);
-  out.files.push_back(path);
-  for (const AtomRange& range : out.ranges) out.atoms = range.last;
-  std::string table = "tube,element,first_atom,last_atom\n";
-  for (const AtomRange& r : out.ranges) table += fmt::format("{},{},{},{}\n", r.tube, r.element, r.first, r.last);
-  out.files.push_back(beside(path, "-elements.csv"));
-  write_file_atomically(out.files.back(), table);
-  if (format != AtomFormat::lammps_data) {
-    out.not_relaxable = "LAMMPS reads .data";
-    return out;
-  }
+  std::optional<AtomForces> forces;
   try {
-    const AtomForces forces = atom_forces(s.sets, potential);
-    out.files.push_back(beside(path, "-relax.in"));
-    write_file_atomically(out.files.back(), relax_input(fs::path(path).stem().string(), forces, parts.size(),
-                                                        held_atoms(s, parts, out.ranges)));
+    if (format == AtomFormat::lammps_data) forces = atom_forces(s.sets, potential);
   } catch (const InputError& e) {
     if (!potential.empty()) throw;
     out.not_relaxable = e.what();
   }
+  out.ranges = write_atoms(path, format, atoms, s.title, s.state.time);
+  out.atoms = out.ranges.back().last;
+  std::string table = "tube,element,first_atom,last_atom\n";
+  for (const AtomRange& r : out.ranges) table += fmt::format("{},{},{},{}\n", r.tube, r.element, r.first, r.last);
+  out.files = {path, beside(path, "-elements.csv")};
+  write_file_atomically(out.files.back(), table);
+  if (!forces) return out;
+  out.files.push_back(beside(path, "-relax.in"));
+  write_file_atomically(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
+                                                      held_atoms(s, parts, out.ranges)));
   return out;
 }
 

@@ -30,6 +30,7 @@ constexpr double farthest = 0.08;     // nm: an atom farther from its place has 
 constexpr double emptiest = 0.5;      // of the sites of an element that must have an atom
 constexpr double most_misfits = 0.2;  // of the sites of a tube
 constexpr int fewest_elements = 2;
+constexpr int most_rounds_of_misfits = 3;
 
 // The largest distance of two rows that follow one another, in thirds of a hexagon.
 long largest_gap(Chirality c) {
@@ -165,7 +166,7 @@ void Coarsening::fit_first() {
     std::optional<ElementFit> fit;
     // Atoms of a cap or beside a defect may have a site that they do not stand on: taken out, and the rest fitted
     // again.
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0;; ++round) {
       const int elements = elements_below(reference, tube.top, a);
       if (elements < fewest_elements)
         throw InputError(
@@ -187,6 +188,7 @@ void Coarsening::fit_first() {
         }
       state = State(static_cast<std::size_t>(elements));
       fit->fit(positions_, state, 0);
+      if (round == most_rounds_of_misfits) break;
       const std::vector<double> misfits = fit->misfits(positions_, state, 0);
       std::vector<LabelledAtom> kept;
       std::vector<char> bad(positions_.size(), 0);

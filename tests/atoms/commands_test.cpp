@@ -25,10 +25,10 @@ parameters = "cnt-5-5-tersoff"
 tubes = 7
 length_nm = 7
 [twist]
-rate_deg_per_ps = 10
-angle_deg = 40
+moment_nN_nm = 1
+rate_nN_nm_per_ps = 1
+hold_ps = 2
 [run]
-duration_ps = 4
 frames_every_ps = 1
 )";
 
