@@ -21,7 +21,7 @@
 #include "model/error.hpp"
 
 namespace ropewalk {
-namespace {
+namespace atom_readers {
 
 constexpr const char* truncated = "the file is cut short or damaged: copy it again, or let LAMMPS write it anew";
 constexpr std::int64_t most_atoms = 200000000;
@@ -521,18 +521,18 @@ class XyzReader : public Reader {
   bool states_time_ = false;
 };
 
-}  // namespace
+}  // namespace atom_readers
 
 struct AtomFiles::Impl {
   struct File {
     std::string path;
-    Format format;
+    atom_readers::Format format;
   };
   std::vector<File> files;
   double time_step_fs = 1;
-  Species species;
+  atom_readers::Species species;
   std::size_t at = 0;
-  std::unique_ptr<Reader> reader;
+  std::unique_ptr<atom_readers::Reader> reader;
   std::string file;
   bool cut_off = false, states_time = true;
   std::vector<std::int64_t> first_ids;  // of the first frame, in rising order
@@ -540,12 +540,12 @@ struct AtomFiles::Impl {
   void open() {
     const File& f = files[at];
     file = f.path;
-    if (f.format == Format::data)
-      reader = std::make_unique<AtomDataReader>(f.path, species);
-    else if (f.format == Format::dump)
-      reader = std::make_unique<AtomDumpReader>(f.path, species, time_step_fs);
+    if (f.format == atom_readers::Format::data)
+      reader = std::make_unique<atom_readers::AtomDataReader>(f.path, species);
+    else if (f.format == atom_readers::Format::dump)
+      reader = std::make_unique<atom_readers::AtomDumpReader>(f.path, species, time_step_fs);
     else
-      reader = std::make_unique<XyzReader>(f.path);
+      reader = std::make_unique<atom_readers::XyzReader>(f.path);
   }
 
   // Brings the atoms into the order of their ids.
@@ -566,7 +566,7 @@ struct AtomFiles::Impl {
       rearrange(ids);
     }
     if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
-      throw InputError({file, 0, "id"}, fmt::format("{} comes twice in a frame", *twice), truncated);
+      throw InputError({file, 0, "id"}, fmt::format("{} comes twice in a frame", *twice), atom_readers::truncated);
     if (first_ids.empty()) {
       first_ids = ids;
     } else if (ids != first_ids) {
@@ -583,9 +583,9 @@ AtomFiles::AtomFiles(std::vector<std::string> paths, double time_step_fs) : impl
   bool moving = false;
   std::vector<Impl::File> data;
   for (const std::string& path : paths) {
-    const Format format = format_of_atoms(path);
-    (format == Format::data ? data : impl_->files).push_back({path, format});
-    moving = moving || format != Format::data;
+    const atom_readers::Format format = atom_readers::format_of_atoms(path);
+    (format == atom_readers::Format::data ? data : impl_->files).push_back({path, format});
+    moving = moving || format != atom_readers::Format::data;
   }
   if (!moving) {
     impl_->files = data;
@@ -593,7 +593,7 @@ AtomFiles::AtomFiles(std::vector<std::string> paths, double time_step_fs) : impl
       throw InputError({data[1].path, 0, ""}, "is a second data file", "give one, and dumps for more frames");
     return;
   }
-  for (const Impl::File& file : data) AtomDataReader(file.path, impl_->species);
+  for (const Impl::File& file : data) atom_readers::AtomDataReader(file.path, impl_->species);
 }
 
 AtomFiles::~AtomFiles() = default;
@@ -608,7 +608,7 @@ bool AtomFiles::next(AtomFrame& frame) {
         impl_->sort(frame, ids);
         return true;
       }
-    } catch (const CutOff&) {
+    } catch (const atom_readers::CutOff&) {
       impl_->cut_off = true;
     }
     impl_->reader.reset();
@@ -616,7 +616,7 @@ bool AtomFiles::next(AtomFrame& frame) {
   }
   if (impl_->first_ids.empty())
     throw InputError({impl_->file, 0, ""}, impl_->cut_off ? "ends within its first frame" : "has no frame",
-                     truncated);
+                     atom_readers::truncated);
   return false;
 }
 

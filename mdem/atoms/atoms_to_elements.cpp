@@ -100,7 +100,7 @@ std::vector<ElementFit::Section> ElementFit::sections(const Position& position) 
 }
 
 Vector3 ElementFit::placed(const TubeCurve& curve, std::size_t k) const {
-  const CrossSection section = curve.at(places_[k].s);
+  const TubeSection section = curve.at(places_[k].s);
   return section.centre +
          section.radius * (places_[k].cosine * section.frame.col(0) + places_[k].sine * section.frame.col(1));
 }
@@ -161,7 +161,7 @@ std::vector<SectionShape> ElementFit::shapes(const std::vector<Vector3>& positio
     shape.shear_y = slope.y() / slope.z();
     double cosine = 0, sine = 0;
     for (std::size_t k = begin_[e]; k < begin_[e + 1]; ++k) {
-      const CrossSection here = curve.at(places_[k].s);
+      const TubeSection here = curve.at(places_[k].s);
       const Vector3 out_of = places_[k].cosine * here.frame.col(0) + places_[k].sine * here.frame.col(1);
       const double rho = (positions[atoms_[k].atom] - here.centre).dot(out_of);
       cosine += rho * (places_[k].cosine * places_[k].cosine - places_[k].sine * places_[k].sine);

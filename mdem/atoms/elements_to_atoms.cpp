@@ -36,13 +36,13 @@ TubeCurve::TubeCurve(const State& state, std::size_t first, int elements, double
   bonds_.push_back(alone);
 }
 
-CrossSection TubeCurve::at(double s) const {
+TubeSection TubeCurve::at(double s) const {
   const double along = s / length_ - 0.5;
   const int last = static_cast<int>(bonds_.size()) - 1;
   const int k = std::clamp(static_cast<int>(std::floor(along)), 0, last);
   const Bond& b = bonds_[static_cast<std::size_t>(k)];
   const double u = along - k, within = std::clamp(u, 0.0, 1.0);
-  CrossSection out;
+  TubeSection out;
   out.radius = b.radius;
   out.frame = (b.start * Eigen::AngleAxisd(within * b.turn, b.turn_axis)).toRotationMatrix();
   const double u2 = within * within, u3 = u2 * within;
@@ -95,7 +95,7 @@ void AtomsOfElements::for_each(const std::function<void(const PlacedAtom&)>& vis
       rows.between(first_height(reference, a, atom.element), first_height(reference, a, atom.element + 1),
                    [&](const SiteRow& row) {
                      const Polar first = polar(reference.chirality, row.first, reference.shape);
-                     const CrossSection section = curve.at(first.z);
+                     const TubeSection section = curve.at(first.z);
                      for (int k = 0; k < row.sites; ++k) {
                        const double phi = first.phi + 2 * units::pi * k / row.sites;
                        atom.position = section.centre + section.radius * (std::cos(phi) * section.frame.col(0) +

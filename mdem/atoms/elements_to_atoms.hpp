@@ -20,7 +20,7 @@
 
 namespace ropewalk {
 
-struct CrossSection {
+struct TubeSection {
   Vector3 centre;         // nm
   Eigen::Matrix3d frame;  // columns: the body's x and y, and the axis
   double radius = 0;      // nm
@@ -34,7 +34,7 @@ class TubeCurve {
             const TubeReference& reference);
 
   // At the height s (nm) of the tube at rest.
-  CrossSection at(double s) const;
+  TubeSection at(double s) const;
 
  private:
   struct Bond {

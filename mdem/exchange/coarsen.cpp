@@ -17,6 +17,7 @@
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
 #include "run/wall_time.hpp"
+#include "scene/bounds.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/single_state.hpp"
 #include "scene/state_csv.hpp"

@@ -151,6 +151,38 @@ TEST_F(Bridge, BadInputIsOneLine) {
   }
 }
 
+// A warm tube shows the stiffness of its own set.
+TEST_F(Bridge, AWarmTubeShowsItsStiffness) {
+  spit(dir / "warm.toml", R"(format = "ropewalk-scene-1"
+parameters = "cnt-5-5-tersoff"
+[chain]
+elements = 24
+[thermostat]
+temperature_K = 300
+coupling_per_ps = 5
+[run]
+duration_ps = 60
+frames_every_ps = 0.2
+)");
+  const Outcome made = run("run warm.toml --out warm --threads 1 --quiet");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome found = run("calibrate fluctuations warm --after 4 --json --out again.toml");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const auto result = nlohmann::json::parse(found.out).at(0);
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  const auto& window = result["windows"][0];
+  for (const auto& [name, is] : {std::pair{"EA (nN)", set.bond.stretch}, std::pair{"EI_x (nN nm^2)", set.bond.bend},
+                                 std::pair{"GJ (nN nm^2)", set.bond.twist}}) {
+    const double value = window[name]["value"], error = window[name]["standard_error"], nN = units::eV_in_nN_nm;
+    EXPECT_LT(std::fabs(value - is * nN), 4 * error) << name;
+    EXPECT_LT(error, 0.1 * is * nN) << name;
+  }
+  EXPECT_NEAR(read_parameters((dir / "again.toml").string()).bond.twist * units::eV_in_nN_nm,
+              result["rod"]["GJ (nN nm^2)"]["value"].get<double>(), 1e-9);
+  EXPECT_NE(run("calibrate fluctuations warm --after 4").out.find("ratio"), std::string::npos);
+  EXPECT_NE(run("calibrate fluctuations warm --after 59").err.find("16 are needed"), std::string::npos);
+}
+
 // A state between the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
 TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   const double a = shipped("cnt-5-5-tersoff").element_length;

@@ -1,6 +1,7 @@
 // Files of atoms as LAMMPS, ASE and others write them, and files that are damaged.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>

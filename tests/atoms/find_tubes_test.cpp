@@ -26,9 +26,9 @@ double misfit(const FoundTubes& found, const FoundTube& tube) {
     real.col(static_cast<Eigen::Index>(k)) = found.positions[tube.atoms[k].atom];
   }
   const Eigen::Matrix4d move = Eigen::umeyama(ideal, real, false);
-  return std::sqrt(
-      ((move.topLeftCorner<3, 3>() * ideal).colwise() + move.topRightCorner<3, 1>().eval() - real).squaredNorm() /
-      static_cast<double>(tube.atoms.size()));
+  Eigen::Matrix3Xd moved = move.topLeftCorner<3, 3>() * ideal;
+  moved.colwise() += Vector3(move.topRightCorner<3, 1>());
+  return std::sqrt((moved - real).squaredNorm() / static_cast<double>(tube.atoms.size()));
 }
 
 TEST(FindTubes, KnowsEveryChiralityAndItsHand) {
