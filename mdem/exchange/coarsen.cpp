@@ -296,9 +296,11 @@ namespace {
 std::string scene_text(const Coarsening& coarse, const CoarsenSettings& settings,
                        const std::vector<std::string>& sets) {
   const Topology& topology = coarse.topology();
+  std::string name = std::filesystem::path(settings.files.back()).stem().string();
+  for (char& c : name)
+    if (c == '"' || c == '\\') c = '_';
   std::string text = "# Elements that were taken from atoms: this scene was not run.\n";
-  text += fmt::format("format = \"{}\"\nname = \"atoms of {}\"\n", scene_format,
-                      std::filesystem::path(settings.files.back()).stem().string());
+  text += fmt::format("format = \"{}\"\nname = \"atoms of {}\"\n", scene_format, name);
   if (sets.size() == 1) {
     text += fmt::format("parameters = \"{}\"\n", sets.front());
   } else {

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "atoms/potential.hpp"
 #include "atomistic/stiffness.hpp"
+#include "atoms/potential.hpp"
 #include "campaign/sweep_file.hpp"
 #include "chart/point.hpp"
 #include "io/files.hpp"

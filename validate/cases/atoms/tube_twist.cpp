@@ -44,8 +44,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   std::string input = "# uniformly twisted periodic cells\n";
   std::vector<TwistedCell> cells;
   for (const double wanted : shears(c)) {
-    const auto cell = twisted_cell_near(c, relaxed.shape, periods,
-                                                   wanted / (relaxed.shape.radius * relaxed.shape.radius));
+    const auto cell =
+        twisted_cell_near(c, relaxed.shape, periods, wanted / (relaxed.shape.radius * relaxed.shape.radius));
     if (!cells.empty() && cell.twist == cells.back().twist) continue;  // no cell is twisted further
     TubeShape shape = relaxed.shape;
     shape.twist = cell.twist;
