@@ -77,6 +77,8 @@ struct Verbs {
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
+  AtomsArguments atoms;
+  CoarsenArguments coarsen;
   std::string check_scene, help_topic, cited_run;
   int code = 0;
 };
@@ -328,6 +330,73 @@ void add_view(CLI::App& app, Verbs& v) {
       ->needs(movie);
   c->add_flag("--force", v.view.force, "Replace the file of -o or --movie");
   c->callback([&v] { v.code = view_command(v.view); });
+}
+
+void add_atoms(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "atoms", "Elements as atoms: a frame of a run, or a state, as a LAMMPS data file or extended XYZ");
+  c->add_option("path", v.atoms.path, "Directory of a run, or a state file (CSV)")->required();
+  c->add_option(
+       "-o", v.atoms.out,
+       "File to write: .data for LAMMPS, .xyz or .extxyz. Beside it: which atoms are of which element, and an "
+       "input of LAMMPS that relaxes them")
+      ->required();
+  CLI::Option* frame =
+      c->add_option("--frame", v.atoms.frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
+  CLI::Option* at =
+      c->add_option("--at", v.atoms.at,
+                    "A limit that the run has passed: the place where it did so first, in the last frame "
+                    "before that")
+          ->excludes(frame);
+  c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(1, 1000)))
+      ->needs(at);
+  c->add_option("--tubes", v.atoms.tubes, "These tubes alone, from 0: 0-18,20");
+  c->add_option("--between", v.atoms.between,
+                "This stretch of each tube alone, nm from its first end at rest: 20,40");
+  c->add_flag("--relax", v.atoms.relax,
+              "Have LAMMPS minimise the energy with the ends held, and print it beside that of the model");
+  c->add_option("--potential", v.atoms.potential,
+                "tersoff, airebo, rebo, lcbop, or a file of pair_style and pair_coeff lines [default: the set's]");
+  c->add_option("--parameters", v.atoms.state.parameters,
+                "Of a state file: its parameter set; several, separated by commas, for tube types")
+      ->delimiter(',');
+  c->add_option("--tube-types", v.atoms.state.tube_types,
+                "Of a state file: which of the sets each tube is [default: all the first]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", v.atoms.state.element_length,
+                "Of a state file: length of an element [default: what it says, else the set's]")
+      ->check(number_within(Bounds::range(0.05, 50)));
+  c->add_flag("--json", v.atoms.json, "With --relax: JSON");
+  c->add_flag("--force", v.atoms.force, "Replace existing files");
+  c->callback([&v] { v.code = atoms_command(v.atoms); });
+}
+
+void add_coarsen(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "coarsen", "Atoms as elements: tubes found in LAMMPS data files, dumps or XYZ become a run, or a state");
+  c->add_option("files", v.coarsen.files,
+                "Files of one simulation: LAMMPS data, LAMMPS text dumps, XYZ or extended XYZ; lengths in Angstrom")
+      ->required()
+      ->check(CLI::ExistingFile);
+  CLI::Option* out = c->add_option("-o,--out", v.coarsen.out,
+                                   "Directory of the run to make, for observe, report, view and compare");
+  c->add_option("--state", v.coarsen.state, "Write the last frame as a state (CSV), from which a scene can start")
+      ->excludes(out);
+  c->add_option("--parameters", v.coarsen.parameters,
+                "Parameter sets, one for each (n,m) [default: shipped ones of what is found]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", v.coarsen.element_length,
+                "Length of an element [default: the set's, of the first kind of tube]")
+      ->check(number_within(Bounds::range(0.3, 50)));
+  c->add_option("--time-step-fs", v.coarsen.time_step_fs, "Time step of the MD, for dumps without ITEM: TIME")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive(1e6)));
+  c->add_flag("--json", v.coarsen.json, "What was found, as JSON");
+  c->add_flag("--force", v.coarsen.force, "Replace an earlier run in --out, or the file");
+  c->add_flag("--quiet", v.coarsen.quiet, "Say nothing of each tube");
+  c->callback([&v] { v.code = coarsen_command(v.coarsen); });
 }
 
 void add_energy(CLI::App& app, Verbs& v) {
@@ -673,6 +742,8 @@ int main(int argc, char** argv) {
   add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);
+  add_atoms(app, verbs);
+  add_coarsen(app, verbs);
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");

@@ -247,6 +247,35 @@ int export_command(const ExportArguments& arguments);
 
 int cite_command(const std::string& directory);
 
+struct AtomsArguments {
+  std::string path;       // directory of a run, or a state file
+  SingleState state;      // of a state file, but for its source
+  std::string out;        // .data, .xyz or .extxyz
+  long frame = -1;        // of a run; from the end if negative
+  std::string at;         // limit, whose place and time are wanted instead
+  double length = 12;     // nm, of that place
+  std::string tubes;      // "0-18,20"; empty: all
+  std::string between;    // "20,40" nm along each tube; empty: all
+  std::string potential;  // empty: that of the sets
+  bool relax = false;
+  bool force = false;
+  bool json = false;
+};
+int atoms_command(const AtomsArguments& arguments);
+
+struct CoarsenArguments {
+  std::vector<std::string> files;
+  std::string out;                      // directory of the run to make
+  std::string state;                    // CSV file to write instead, of one frame
+  std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
+  double element_length = 0;            // nm; 0: the set's
+  double time_step_fs = 1;              // of MD steps in dumps that state no time
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+int coarsen_command(const CoarsenArguments& arguments);
+
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
 };

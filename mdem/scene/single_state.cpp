@@ -104,8 +104,8 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
-  EvaluatedState out{build(scene), Forces()};
-  Interaction interaction = interaction_of(scene, out.built.law);
+  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces()};
+  Interaction& interaction = out.interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
   begin_with(scene.memory, out.built.topology, interaction);
   out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference, {scene.path, 0, ""});

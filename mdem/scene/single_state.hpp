@@ -24,7 +24,9 @@ struct SingleState {
 };
 
 struct EvaluatedState {
+  std::vector<ParameterSet> sets;
   BuiltScene built;
+  Interaction interaction;
   Forces forces;
 };
 // Throws InputError, which names the options of `ropewalk energy`.

@@ -13,7 +13,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/draft.hpp"
@@ -46,7 +46,7 @@ std::vector<Place> places(const ParametrizeArguments& a) {
   for (const std::string& text : a.tubes)
     for (const std::string& potential : a.potentials) {
       const Chirality c = calibrate::parse_chirality(text);
-      calibrate::find_potential(potential);
+      find_potential(potential);
       const Place place{text, potential, fmt::format("cnt-{}-{}-{}", c.n, c.m, potential), a.out};
       const auto twice = [&](const Place& other) { return other.name == place.name; };
       if (std::none_of(all.begin(), all.end(), twice)) all.push_back(place);
