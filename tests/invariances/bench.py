@@ -253,7 +253,7 @@ def unit_of(column):
 
 
 def same_columns(a, b, within, rounding=1e-9, only=None, leave=(), sign=lambda name: 1, other=lambda name: name,
-                 factor=lambda name: 1, last=False):
+                 factor=lambda name: 1, last=False, floor=1e-12):
     """Columns of two logs are equal, within a part of the largest value of the column and `rounding` of the largest
     in the column's unit. `sign`, `factor` and `other` say what b has for a column of a. Rows are compared by number."""
     names = [n for n in a if n not in ("step", *leave) and (only is None or n in only) and other(n) in b]
@@ -265,19 +265,23 @@ def same_columns(a, b, within, rounding=1e-9, only=None, leave=(), sign=lambda n
         most = max((abs(x) for x in a[n] if math.isfinite(x)), default=0)
         largest[n] = most
         largest[unit_of(n)] = max(most, largest.get(unit_of(n), 0))
-    worst, words = 0, ""
+    found = []
     for n in names:
-        slack = within * largest[n] + rounding * largest[unit_of(n)] + 1e-12
+        slack = within * largest[n] + rounding * largest[unit_of(n)] + floor
+        worst, words = 1, ""
         for k in [-1] if last else range(count):
             x, y = factor(n) * a[n][k], sign(n) * b[other(n)][k]
             if math.isnan(x) and math.isnan(y):
                 continue
             off = abs(x - y) / (slack * abs(factor(n)))
-            if not off <= max(worst, 1):
+            if not off <= worst:
                 worst = off if math.isfinite(off) else math.inf
-                words = f"{n} {x:.10g} / {y:.10g} at {a['time_ps'][k]:.4g} ps"
-    if words:
-        raise Differs(words)
+                words = f"{n} {x:.8g} / {y:.8g} at {a['time_ps'][k]:.4g} ps"
+        if words:
+            found.append((worst, words))
+    if found:
+        found.sort(reverse=True)
+        raise Differs("; ".join(words for _, words in found[:3]) + (f"; {len(found)} columns" if len(found) > 3 else ""))
 
 
 def near(name, x, y, within, floor=0.0):
@@ -448,7 +452,7 @@ class Case:
         early = ["--steps", 12] if self.scene.relaxes() else []
         first = self.kept("midst", lambda name: self.run(self.in_double(), *early, name=name))
         scene = self.in_double()
-        scene = scene.with_keys(**{scene.source: None}, start={k: None for k in (
+        scene = scene.with_keys(**{scene.source: None}).with_keys(start={k: None for k in (
             "temperature_K", "may_cool", "twist_deg_per_nm", "wave_nm", "half_waves")})
         state = first.state().without_memory()
         if scene.relaxes():

@@ -15,6 +15,7 @@ import shutil
 import sys
 import tempfile
 import time
+import traceback
 
 sys.dont_write_bytecode = True
 from bench import Bench, Differs, HERE, Skip  # noqa: E402
@@ -42,6 +43,9 @@ def judge(bench, kind, name, seed):
         return "skipped", str(why)
     except Differs as what:
         return "found", str(what)
+    except Exception as e:  # a fault of this program, or an answer that it does not understand
+        place = traceback.extract_tb(e.__traceback__)[-1]
+        return "found", f"{type(e).__name__}: {e} ({place.name}, line {place.lineno})"
     return "held", ""
 
 
