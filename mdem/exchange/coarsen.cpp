@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +21,7 @@
 #include "scene/single_state.hpp"
 #include "scene/state_csv.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -413,7 +413,7 @@ CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, 
   m.compiler = compiler;
   m.build_type = build_type;
   m.instructions = instructions_in_use();
-  m.threads = omp_get_max_threads();
+  m.threads = threads_in_use();
   m.seed = scene.start.seed;
   m.scene_hash = scene.hash;
   m.parameter_hash = scene.parameters().hash;
