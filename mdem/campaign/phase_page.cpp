@@ -211,6 +211,17 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   }
   html += "</tbody></table></div>\n";
   if (theory) {
+    html += paragraph(escape_markup(
+        "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
+        "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
+        "8.987 EI/L on each tube on, however long one waits; in the time of the scene it passes where the growth, "
+        "summed over ramp and hold, has made half of the wave at the start as large as is asked. The winding is "
+        "the "
+        "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
+        "rope "
+        "that stays packed. The turns of the helix are those of the one that grows fastest there. Glued tubes "
+        "would need EI + "
+        "EA<rho^2>/2 in place of EI."));
     html +=
         "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>infinite waiting "
         "time</th><th>glued "
@@ -223,17 +234,6 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
                           p.rates() > 0 ? fmt::format("{:.2f} ({})", p.rate_over_theory(), p.rates()) : "–");
     }
     html += "</tbody></table></div>\n";
-    html += paragraph(escape_markup(
-        "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
-        "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
-        "8.987 EI/L on each tube on, however long one waits; in the time of the scene it passes where the growth, "
-        "summed over ramp and hold, has made half of the wave at the start as large as is asked. The winding is "
-        "the "
-        "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
-        "rope "
-        "that stays packed. The turns of the helix are those of the one that grows fastest there. Glued tubes "
-        "would need EI + "
-        "EA<rho^2>/2 in place of EI."));
   }
   for (const auto& [name, some] : diagrams_of(sweep, points)) {
     const std::string svg = scatter_svg(diagram(sweep, name, some));
