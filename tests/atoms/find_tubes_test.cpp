@@ -126,6 +126,49 @@ TEST(FindTubes, CutsAnEndlessTubeOpen) {
   }
 }
 
+// Buckminsterfullerene with an axis through two pentagons along z, in edges of 0.142 nm.
+std::vector<Vector3> fullerene() {
+  const double g = 0.5 * (1 + std::sqrt(5.0));
+  const Vector3 corners[] = {{0, 1, 3 * g}, {1, 2 + g, 2 * g}, {g, 2, g * g * g}};
+  const Quaternion upright = Quaternion::FromTwoVectors(Vector3(0, 1, g), Vector3::UnitZ());
+  std::vector<Vector3> out;
+  for (const Vector3& corner : corners)
+    for (int signs = 0; signs < 8; ++signs)
+      for (int shift = 0; shift < 3; ++shift) {
+        Vector3 x;
+        for (int k = 0; k < 3; ++k) x[(k + shift) % 3] = corner[k] * ((signs >> k) % 2 ? -1 : 1);
+        x = 0.071 * (upright * x);
+        if (std::none_of(out.begin(), out.end(), [&](const Vector3& y) { return (x - y).norm() < 0.01; }))
+          out.push_back(x);
+      }
+  return out;
+}
+
+// A (5,5) tube that is closed at both ends: its halves are caps of six pentagons each.
+TEST(FindTubes, NamesCaps) {
+  const std::vector<Vector3> ball = fullerene();
+  ASSERT_EQ(ball.size(), 60u);
+  const int rings = 24;
+  const double rise = 0.123;
+  std::vector<Vector3> atoms;
+  for (const Vector3& x : ball) {
+    atoms.push_back(x.z() < 0 ? x : Vector3(x + Vector3(0, 0, rings * rise)));
+    // The rings next to the equator alternate along the tube.
+    if (std::fabs(x.z()) > 0.1) continue;
+    for (int k = 1; k <= rings; ++k)
+      if ((k % 2 == 0) == (x.z() < 0)) atoms.push_back({x.x(), x.y(), -0.06 + k * rise});
+  }
+  const FoundTubes found = found_in(scrambled(atoms, 0.002, 9));
+  ASSERT_EQ(found.tubes.size(), 1u);
+  const FoundTube& tube = found.tubes[0];
+  EXPECT_EQ(name(tube.chirality), "(5,5)");
+  EXPECT_EQ(tube.pentagons, 12);
+  EXPECT_EQ(tube.heptagons, 0);
+  EXPECT_TRUE(tube.cap_below && tube.cap_above);
+  EXPECT_GE(tube.atoms.size(), 10u * rings);
+  EXPECT_EQ(tube.atoms.size() + static_cast<std::size_t>(tube.without_site), atoms.size());
+}
+
 // Tubes of one rope on both sides of a periodic box come together.
 TEST(FindTubes, GathersTheTubesOfARopeAcrossTheBox) {
   AtomBox box;
