@@ -68,9 +68,11 @@ const KeyTable<StopRule>& stop_table() {
        Key::custom("value", "", otherwise("1", "required but for \"limit\" and \"shape\""),
                    "in the unit of the column; growth: 0.05 is 5 %", read_value),
        Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),
-                   "steady, growth: in the last rows of so much time"),
+                   "steady, growth: in the last rows of so much time")
+           .of_pace(SceneKey::Pace::time),
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
-                   "not looked at before"),
+                   "not looked at before")
+           .of_pace(SceneKey::Pace::time),
        Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit),
        Key::custom("shape", "", otherwise("\"helix\"", "required for \"shape\""),
                    "\"straight\", \"spindle\", \"helix\", \"brush\", \"cage\" or \"snarl\"", read_shape)},
