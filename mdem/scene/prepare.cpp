@@ -75,7 +75,7 @@ void refuse_expectations(const Scene& scene, double duration) {
   const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
   for (const Expectation& e : scene.expected) {
     column_of_log(e.column, {scene.path, 0, "expect.column"});
-    if (!e.at) continue;
+    if (!e.at || e.of_other_scene) continue;
     if (relaxes)
       throw InputError({scene.path, 0, "expect.at_ps"}, "is a time, and a relaxation has none",
                        "take it away: the last row is judged");
