@@ -1,5 +1,6 @@
 #include "run/pages/run_plate.hpp"
 
+#include "io/numeric_errors.hpp"
 #include "report/plate.hpp"
 #include "run/pages/run_views.hpp"
 
@@ -13,6 +14,7 @@ std::string run_plate(const RunDirectory& dir, const PlateOptions& o) {
   in.tube_radius = prepared.topology.largest_radius();
   in.shells = observer.shells;
   in.log = read_log(dir.log());
+  if (!o.curves.empty()) in.errors = rows_of_errors(dir.path, in.log);
   in.curves = o.curves;
   in.x = o.x;
   in.width = o.width;
