@@ -47,7 +47,7 @@ class Planning {
   bool relaxes() const { return scene_.run.mode == RunOptions::Mode::relax; }
 
   void leave_out(const std::string& what, const std::string& why) {
-    plan_.what.left_out.push_back(what + ": " + why);
+    plan_.what.remarks.push_back("Not repeated, " + what + ": " + why);
   }
 
   std::string with(const std::string& text, const char* key, double value) const {
@@ -88,9 +88,9 @@ class Planning {
          fmt::format("elements of {:.4g} nm in the place of {:.4g} nm", 0.5 * length, length),
          fmt::format("element_length_nm = {:.3g}", half_error * length)});
     if (is_warm(scene_))
-      leave_out(
-          name,
-          "the heat of a warm scene goes with their number, and energies with the heat: look at the other columns");
+      plan_.what.remarks.push_back(
+          "Shorter elements: a warm scene has more heat with more of them, and its energies are not those of one "
+          "scene");
   }
 
   std::string without_frames(const std::string& text) const {

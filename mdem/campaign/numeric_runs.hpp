@@ -27,8 +27,8 @@ struct NumericPlan {
   NumericRuns what;
 };
 
-// Every scene of it has been prepared. What a scene does not allow is in what.left_out. `scene`, `prepared` and `log`
-// are those of the run in `base`.
+// Every scene of it has been prepared. What a scene does not allow is in what.remarks. `scene`, `prepared` and
+// `log` are those of the run in `base`.
 NumericPlan numeric_plan(const RunDirectory& base, const Scene& scene, const Prepared& prepared,
                          const std::vector<LogRow>& log);
 

@@ -117,7 +117,7 @@ void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters,
     fmt::print("statistics: scatter of this run and {} from other starts.\n", whole.runs().starts.size());
   if (!too_short.empty())
     fmt::print("Too short for an error by blocks, about {:.2g} ps would do: {}.\n", needed, too_short);
-  for (const std::string& why : whole.runs().left_out) fmt::print("Not repeated, {}.\n", why);
+  for (const std::string& why : whole.runs().remarks) fmt::print("{}.\n", why);
 }
 
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }

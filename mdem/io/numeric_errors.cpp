@@ -92,7 +92,7 @@ WholeError NumericErrors::of(const RunErrors::Result& result,
   for (const double v : values) squares += (v - mean) * (v - mean);
   if (values.size() > 1) e.statistics = or_zero(std::sqrt(squares / static_cast<double>(values.size() - 1)));
   blocks(e);
-  double largest = e.statistics;
+  double largest = e.statistics, bounds = 0, certain = 0;
   if (largest > 0) e.decides = "statistics";
   // What is larger than all before it, and more than scatter makes of it.
   const auto weigh = [&](double part, double scatter, const std::string& name) {
@@ -106,9 +106,10 @@ WholeError NumericErrors::of(const RunErrors::Result& result,
     const double scatter = s.times * std::sqrt(2.0) * e.statistics;
     e.parts.push_back(part);
     e.numerics = std::hypot(e.numerics, or_zero(part));
-    e.bound = e.bound || (part > 0 && part <= sure * scatter);
+    (part <= sure * scatter ? bounds : certain) += or_zero(part * part);
     weigh(part, scatter, s.name);
   }
+  e.bound = bounds > certain;
   if (!parameters_.empty()) {
     const ResultError p = parameters_.of(result);
     e.parameters = or_zero(p.error);
@@ -150,10 +151,10 @@ NumericErrors read_numeric_errors(const std::string& run_directory, const std::v
       runs.sources.push_back(
           {s.at("name"), s.at("folder"), s.at("times"), s.at("pace"), s.at("change"), s.at("remedy")});
     runs.starts = j.at("starts").get<std::vector<std::string>>();
-    runs.left_out = j.at("left_out").get<std::vector<std::string>>();
+    runs.remarks = j.at("remarks").get<std::vector<std::string>>();
     std::vector<std::string> texts = runs.starts;
     for (const NumericSource& s : runs.sources) texts.insert(texts.end(), {s.name, s.folder, s.change, s.remedy});
-    texts.insert(texts.end(), runs.left_out.begin(), runs.left_out.end());
+    texts.insert(texts.end(), runs.remarks.begin(), runs.remarks.end());
     for (const std::string& text : texts)
       if (has_control_character(text)) throw std::runtime_error("a control character");
   } catch (const std::exception&) {
@@ -191,8 +192,8 @@ std::string numeric_errors_json(const NumericErrors& errors, const std::vector<L
                      {"needed_ps", number(e.needed_ps)},
                      {"parts", parts}};
   }
-  return Json{{"format", format_name}, {"mean_ps", runs.mean_ps},   {"sources", sources},
-              {"starts", runs.starts}, {"left_out", runs.left_out}, {"at_the_end", results}}
+  return Json{{"format", format_name}, {"mean_ps", runs.mean_ps}, {"sources", sources},
+              {"starts", runs.starts}, {"remarks", runs.remarks}, {"at_the_end", results}}
              .dump(1) +
          "\n";
 }

@@ -35,16 +35,16 @@ struct NumericSource {
 // What was repeated, as errors/numerics.json has it.
 struct NumericRuns {
   std::vector<NumericSource> sources;
-  std::vector<std::string> starts;    // folders of the runs from other starts
-  std::vector<std::string> left_out;  // a sentence each: what could not be repeated, and why
-  double mean_ps = 0;                 // results are means over the last so many ps; 0: the last row
+  std::vector<std::string> starts;   // folders of the runs from other starts
+  std::vector<std::string> remarks;  // a sentence each, such as what could not be repeated, and why
+  double mean_ps = 0;                // results are means over the last so many ps; 0: the last row
 };
 
 struct WholeError {
   double value = 0;
   double statistics = 0, numerics = 0, parameters = 0, potential = 0;
   std::vector<double> parts;  // of the numerics, by source
-  bool bound = false;         // some of them are upper bounds
+  bool bound = false;         // most of them is an upper bound
   std::string decides;        // what is largest: "statistics", "potential", "elements", "GJ"; empty: nothing is
   // Of a mean over time; nan: of none. needed_ps: that an error by blocks needs, where the time is too short.
   double correlation_ps = std::numeric_limits<double>::quiet_NaN();

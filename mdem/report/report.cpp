@@ -503,7 +503,7 @@ std::string whole_errors(const ReportInput& in) {
   html += facts_part(facts);
   std::string words;
   for (const NumericSource& s : runs.sources) words += fmt::format("{}: {}. ", s.name, s.change);
-  for (const std::string& why : runs.left_out) words += fmt::format("Not repeated, {}. ", why);
+  for (const std::string& why : runs.remarks) words += fmt::format("{}. ", why);
   if (runs.mean_ps > 0) words += fmt::format("Values are means over the last {} ps.", number_text(runs.mean_ps, 4));
   return html + paragraph(escape_markup(words));
 }

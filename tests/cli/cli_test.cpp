@@ -334,6 +334,27 @@ TEST_F(Cli, ARunThatIsNotAsExpectedHasAnExitCode) {
   EXPECT_THAT(judged.out, HasSubstr("at 0.5 ps, not as expected: 7 ± 1"));
 }
 
+class Templates : public Cli {
+ protected:
+  // Each carries what it gives.
+  void give_what_they_expect(const std::vector<std::string>& kinds) const {
+    for (const std::string& kind : kinds) {
+      ASSERT_EQ(run("new " + kind + " --kind " + kind).code, 0) << kind;
+      const Outcome o = run("run " + kind + ".toml --out " + kind + " --quiet");
+      EXPECT_EQ(o.code, 0) << kind << "\n" << o.out << o.err;
+      EXPECT_THAT(o.out, HasSubstr("as expected: ")) << kind;
+    }
+  }
+};
+using TemplatesLong = Templates;
+
+TEST_F(Templates, GiveWhatTheyExpect) { give_what_they_expect({"chain", "relax", "pull-out"}); }
+
+TEST_F(TemplatesLong, GiveWhatTheyExpect) {
+  give_what_they_expect({"pull-out-outer", "load-transfer", "twist-to-failure", "interior", "strands", "bend",
+                         "bundle", "film", "hot-chain", "constant-tension"});
+}
+
 // The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0
 // that looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
@@ -1226,8 +1247,9 @@ TEST_F(Cli, NumericsTellHowFarARodIsOff) {
   EXPECT_NEAR(bend.at("parts").at("elements").get<double>(), std::fabs(off), 0.1 * std::fabs(off)) << bend;
   EXPECT_LT(bend.at("parts").at("tolerance").get<double>(), 0.1 * std::fabs(off));
   EXPECT_EQ(bend.at("decides"), "elements");
-  EXPECT_EQ(found.at("left_out"), Json({"another start: nothing in the scene is random, and a relaxation takes no "
-                                        "velocities"}));
+  EXPECT_EQ(found.at("remarks"),
+            Json({"Not repeated, another start: nothing in the scene is random, and a relaxation takes no "
+                  "velocities"}));
   EXPECT_EQ(run("errors r --numerics --mean 1 --quiet").code, 2);
 }
 

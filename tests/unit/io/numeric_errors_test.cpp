@@ -130,7 +130,7 @@ TEST(NumericErrors, AreReadAsTheyWereWritten) {
   runs.add("half-rate", log_of(9, 2, [](double t) { return 3 + t; }));
   NumericRuns what;
   what.sources = {{"rate", "half-rate", 2, 2, "slower", "slower still"}};
-  what.left_out = {"elements: why"};
+  what.remarks = {"elements: why"};
   const std::vector<LogRow> log = log_of(9, 1, [](double t) { return t; });
   const std::string text = numeric_errors_json(runs.of(what, log), log);
   write_file_atomically(runs.path() + "/errors/numerics.json", text);
