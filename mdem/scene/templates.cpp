@@ -301,6 +301,8 @@ const Expected all_expected[] = {
     {"snarl", "twist_eV", 1096.08, 0.11, 300},
     {"spindle", "geometric_twist_deg", 274.11, 0.05, 45},
     {"spindle", "vdw_eV", -29505.3, 3, 45},
+    {"bird-cage", "geometric_twist_deg", 145.624, 0.02, 45},
+    {"bird-cage", "vdw_eV", -17895.9, 1.8, 45},
     {"helix", "geometric_twist_deg", 277.91, 0.1, 45},
     {"helix", "beta_deg", 8.2, 0.025, 45},
     {"untwist", "geometric_twist_deg", 405.83, 0.05, 100},
