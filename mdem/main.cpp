@@ -176,6 +176,12 @@ void add_errors(CLI::App& app, Verbs& v) {
       "errors",
       "Errors of a finished run's results that follow from those of its sets, files and typed numbers: repeats it");
   c->add_option("dir", v.errors.dir, "Directory of the run")->required();
+  CLI::Option* numerics = c->add_flag(
+      "--numerics", v.errors.numerics,
+      "The whole error: also by elements, time step and rate, each halved, and by other starts and random numbers");
+  c->add_option("--mean", v.errors.mean_ps, "Of means over the last so many ps, in the place of the last row")
+      ->check(number_within(Bounds::positive()))
+      ->needs(numerics);
   c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
   c->add_flag("--again", v.errors.again, "Repeat also what is finished");
   c->add_flag("--json", v.errors.json, "JSON");
@@ -205,6 +211,10 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
+  c->add_option(
+       "--mean", v.compare.mean_ps,
+       "Runs: the table, and --csv, have means over the last so many ps, each with its error and correlation time")
+      ->check(number_within(Bounds::positive()));
   c->add_flag(
       "--tensile", v.compare.tensile,
       "Runs that pull a rope: strength, modulus, toughness and breaks, against the value of --x before the pull");

@@ -121,7 +121,9 @@ int modes_command(const ModesArguments& arguments);
 
 struct ErrorsArguments {
   std::string dir;
-  int jobs = 0;  // runs at a time; 0: one for each core
+  bool numerics = false;  // with elements, time step, rate and other starts
+  double mean_ps = 0;     // numerics: of means over so much time; 0: of the last row
+  int jobs = 0;           // runs at a time; 0: one for each core
   bool again = false;
   bool json = false;
   bool quiet = false;
@@ -138,6 +140,7 @@ struct CompareArguments {
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
+  double mean_ps = 0;    // the table has means over the last so much time; 0: the last rows
   bool tensile = false;  // strength, toughness and so on of runs that pull a rope
   bool torsion = false;  // the largest torque and what came with it, of runs that twist a rope
   std::string svg, csv;  // write these files instead of a page

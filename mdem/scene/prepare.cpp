@@ -80,7 +80,7 @@ void refuse_expectations(const Scene& scene, double duration) {
     const Expectation& e = scene.expected[k];
     const auto at = [&](const char* key) { return place_in(scene, key, static_cast<int>(k)); };
     column_of_log(e.column, at("expect.column"));
-    if (!e.at) continue;
+    if (!e.at || e.of_other_scene) continue;
     if (relaxes)
       throw InputError(at("expect.at_ps"), "is a time, and a relaxation has none",
                        "take it away: the last row is judged");

@@ -105,6 +105,8 @@ class ProgramsTest(FolderTest):
         found = ropewalk.errors(run)
         self.assertTrue(os.path.exists("run/errors.csv"))
         self.assertTrue(found)
+        whole = ropewalk.errors(run, numerics=True)["at_the_end"]["kinetic_eV"]
+        self.assertGreaterEqual(whole["error"], whole["numerics"])
 
     def test_modes(self):
         # A free tube under couples: a straight one is at rest, and its fastest motion is a helix from 8.987 EI/L = 79.2 nN nm on.

@@ -134,6 +134,14 @@ class RunTest(FolderTest):
                 self.assertEqual(again, scene)
                 np.testing.assert_array_equal(position, end_of(scene)[1])
 
+    def test_mean_of_a_column(self):
+        log = self.run_.log
+        mean = log.mean("time_ps")
+        self.assertAlmostEqual(mean.value, log["time_ps"].mean())
+        self.assertTrue(np.isnan(mean.error), "time drifts")
+        last = log["time_ps"][-1] - log["time_ps"][-2]
+        self.assertAlmostEqual(log.mean("time_ps", last_ps=last).value, log["time_ps"][-2:].mean())
+
     def test_log_as_npz(self):
         self.run_.log.to_npz("log.npz")
         stored = np.load("log.npz")

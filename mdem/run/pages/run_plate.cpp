@@ -1,6 +1,9 @@
 #include "run/pages/run_plate.hpp"
 
+#include "io/numeric_errors.hpp"
+#include "report/plate.hpp"
 #include "run/pages/colour_fields.hpp"
+#include "run/pages/run_views.hpp"
 
 namespace ropewalk {
 
@@ -12,6 +15,7 @@ PlateInput plate_of(const RunDirectory& dir, const PlateOptions& o) {
   in.tube_radius = prepared.topology.largest_radius();
   in.shells = observer.shells;
   in.log = read_log(dir.log());
+  if (!o.curves.empty()) in.errors = rows_of_errors(dir.path, in.log);
   in.curves = o.curves;
   in.x = o.x;
   in.width = o.width;

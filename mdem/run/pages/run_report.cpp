@@ -148,6 +148,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
       in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
   in.log = read_log(dir.log());
   in.errors = read_run_errors(dir.path, in.log);
+  in.whole = read_numeric_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (const std::string words = plan_words(dir, scene, m); !words.empty())
     in.error_bars.insert(in.error_bars.begin(), words);

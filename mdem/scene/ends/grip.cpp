@@ -460,16 +460,17 @@ GripAxis read_axis(const TomlTable& t, const std::string& axis, bool rotation) {
 KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std::string& meaning) {
   const std::string name = grip_axis_names[axis];
   return KeyOf<GripLoad>::custom(
-      name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
-      [=](const TomlTable& t, const Scene&, GripLoad& grip) {
-        if (!t.has(name)) return;
-        if (t.is_string(name)) {
-          grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
-          return;
-        }
-        const Course& example = courses[axis < 3 ? 0 : 4];
-        grip.axes[axis] = read_axis(t.table(name, example_of(example)), name, axis >= 3);
-      });
+             name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
+             [=](const TomlTable& t, const Scene&, GripLoad& grip) {
+               if (!t.has(name)) return;
+               if (t.is_string(name)) {
+                 grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
+                 return;
+               }
+               const Course& example = courses[axis < 3 ? 0 : 4];
+               grip.axes[axis] = read_axis(t.table(name, example_of(example)), name, axis >= 3);
+             })
+      .of_pace(SceneKey::Pace::course);
 }
 
 void check_grip(const TomlTable& t, const Scene&, GripLoad& grip) {
@@ -518,7 +519,8 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::boolean("tilt_free", &GripLoad::tilt_free, standard(), "tubes tilt in the clamp"),
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
                    otherwise("10", "twice the travel of sound along the tubes for motions, 0 for loads"),
-                   "rates change over this time, at most over half of the line between two points")},
+                   "rates change over this time, at most over half of the line between two points")
+           .of_pace(SceneKey::Pace::time)},
       check_grip};
   return table;
 }

@@ -80,14 +80,17 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                      "tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
-                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
+                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)
+           .of_pace(SceneKey::Pace::course),
        Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
                    "strain of the slice against time, [[ps, strain], ...], from the first of these times on",
-                   read_strain),
+                   read_strain)
+           .of_pace(SceneKey::Pace::course),
        Key::custom(
            "tension_nN", "nN", otherwise("[[0, 0]]", "the slice keeps its length"),
            "tension of the rope against time, until strain begins; until then the length of the slice is free",
-           read_tension)},
+           read_tension)
+           .of_pace(SceneKey::Pace::course)},
       check_slice};
   return table;
 }

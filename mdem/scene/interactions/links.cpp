@@ -180,7 +180,8 @@ const KeyTable<LinksDrive>& links_table() {
        Key::number(
            "placed_at_ps", unit::ps, Bounds::non_negative(longest_time),
            [](auto& d) -> auto& { return d.law.placed_at; }, standard(),
-           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun"),
+           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun")
+           .of_pace(SceneKey::Pace::time),
        Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
                    "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
                    "elements from the end",

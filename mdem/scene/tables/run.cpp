@@ -67,15 +67,18 @@ const KeyTable<RunOptions>& run_table() {
                    "speed grow by it and at a given temperature stay; statics stay"),
        Key::number("duration_ps", unit::ps, time, &R::duration,
                    otherwise("100", "until [twist] and all grips have done what they do"),
-                   "dynamics: simulated time"),
+                   "dynamics: simulated time")
+           .of_pace(SceneKey::Pace::time),
        Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
-                   "time between stored frames"),
+                   "time between stored frames")
+           .of_pace(SceneKey::Pace::time),
        Key::word("frames_format", Words<FrameFormat>{{"gsd", FrameFormat::gsd}, {"lammpstrj", FrameFormat::dump}},
                  &R::frames_format, standard(),
                  "\"gsd\": binary, for OVITO and MDAnalysis; \"lammpstrj\": text, for LAMMPS and ASE as well, four "
                  "times as large"),
        Key::number("log_every_ps", unit::ps, time, &R::log_every, otherwise("0.1", "400 rows"),
-                   "time between rows of the log"),
+                   "time between rows of the log")
+           .of_pace(SceneKey::Pace::time),
        Key::number("checkpoint_every_s", unit::seconds, Bounds::positive(1e6), &R::checkpoint_every, standard(),
                    "wall time between checkpoints"),
        Key::number(

@@ -68,9 +68,11 @@ const KeyTable<StopRule>& stop_table() {
        Key::custom("value", "", otherwise("1", "required but for \"limit\" and \"shape\""),
                    "in the unit of the column; growth: 0.05 is 5 %", read_value),
        Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),
-                   "steady, growth: length of time over which the last rows are judged"),
+                   "steady, growth: length of time over which the last rows are judged")
+           .of_pace(SceneKey::Pace::time),
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
-                   "the rule is not looked at before this time"),
+                   "the rule is not looked at before this time")
+           .of_pace(SceneKey::Pace::time),
        Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: the key of [limits] that counts",
                    read_limit),
        Key::custom("shape", "", otherwise("\"helix\"", "required for \"shape\""),
