@@ -51,7 +51,7 @@ endif()
 
 # The libraries, for programs of your own: Ropewalk::campaign brings all those below it, and Ropewalk::program has the whole
 # of `ropewalk`, with its main().
-set(libraries model sim observe io report scene plan run campaign bench exchange cli commands program)
+set(libraries model sim observe io atoms report scene plan run campaign bench exchange cli commands program)
 foreach(library ${libraries})
   set_target_properties(ropewalk_${library} PROPERTIES EXPORT_NAME ${library})
   list(APPEND library_targets ropewalk_${library})
