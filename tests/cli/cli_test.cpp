@@ -60,7 +60,7 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   EXPECT_EQ(links.find("[[links]]  "), 0u) << links;
   EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
   EXPECT_EQ(links.find("length_nm"), std::string::npos) << links;
-  EXPECT_EQ(run("help '[run]'").out.find("[run]  "), 0u);
+  EXPECT_EQ(run("help '[run]'").out.find("[run]\n"), 0u);
   const std::string length = run("help length_nm").out;
   for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
     EXPECT_NE(length.find(word), std::string::npos) << length;
