@@ -160,7 +160,7 @@ TEST_F(View, TubesThatBreakAreDrawnInTheirParts) {
   NEEDS_CHROMIUM;
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 20\n"
-       "[failure]\nstrain = 0.05\n[limits]\nstrain = 0.01\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz "
+       "[failure]\nstrain = 0.05\n[limits]\nstrain = 0.02\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz "
        "= { "
        "strain = [[0, 0], "
        "[20, "
