@@ -87,6 +87,11 @@ class Planning {
         {name, "half-elements", second_order, 1,
          fmt::format("elements of {:.4g} nm in the place of {:.4g} nm", 0.5 * length, length),
          fmt::format("element_length_nm = {:.3g}", half_error * length)});
+    if (splitting_of(scene_) == Splitting::between)
+      plan_.what.remarks.push_back(
+          "Shorter elements: what is held stays in its place, and behind it tubes end a quarter of an element "
+          "earlier, "
+          "which counts in energies of the whole");
     if (is_warm(scene_))
       plan_.what.remarks.push_back(
           "Shorter elements: a warm scene has more heat with more of them, and its energies are not those of one "
