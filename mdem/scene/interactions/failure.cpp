@@ -1,7 +1,8 @@
 // [failure] tubes that break: a bond between two elements breaks for good in the first step in which the tube about
 // it is strained, or bends, beyond its limit, or in which the bond itself can carry no more torque.
 //
-//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90 degrees
+//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90
+//   degrees
 //
 // n bonds are about as long as the tube is wide, one where elements are as long as that. So heat, which strains a
 // bond the more the shorter it is, weakens a tube in short elements no more than in long ones. `from = "atoms"`
@@ -32,6 +33,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
@@ -300,7 +302,7 @@ const KeyTable<FailureDrive>& failure_table() {
           throw t.error("strain_deviation", "stands without strain", "give the mean strain too");
         refuse_beyond_data(t, scene, failure.law);
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
-        if (!(failure.law.reference > 0)) failure.law.reference = scene.parameters().element_length;
+        if (!(failure.law.reference > 0)) failure.law.reference = own_element_length(scene);
         if (failure.law.deviation > 0.34 * failure.law.strain)
           throw t.error("strain_deviation", "is more than a third of strain: some bonds would break at rest",
                         fmt::format("take at most {:.2g}", failure.law.strain / 3));
