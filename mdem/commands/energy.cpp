@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "run/threads.hpp"
 #include "scene/kinds/state.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

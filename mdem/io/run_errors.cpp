@@ -57,11 +57,15 @@ RunErrors::RunErrors(const std::string& directory, std::vector<ErrorSource> sour
 }
 
 ResultError RunErrors::of(std::size_t k, const Value& value) const {
+  return of([&](const std::vector<LogRow>& log) { return value(log.at(k)); });
+}
+
+ResultError RunErrors::of(const Result& result) const {
   ResultError out;
-  const double middle = value(log_.at(k));
+  const double middle = result(log_);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double plus = value(runs_[i].first[k]),
-                 minus = sources_[i].minus.empty() ? 2 * middle - plus : value(runs_[i].second[k]);
+    const double plus = result(runs_[i].first),
+                 minus = sources_[i].minus.empty() ? 2 * middle - plus : result(runs_[i].second);
     const double scale = 0.5 * sources_[i].sigma / sources_[i].step;
     double part = scale * (plus - minus);
     const double bent = scale * std::fabs(plus + minus - 2 * middle);

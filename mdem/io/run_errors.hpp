@@ -41,6 +41,7 @@ struct ResultError {
 class RunErrors {
  public:
   using Value = std::function<double(const LogRow&)>;
+  using Result = std::function<double(const std::vector<LogRow>&)>;  // of a log
 
   RunErrors() = default;
   // The logs of the runs are read from `directory`. Where they have other rows than `log`, the last ones are
@@ -53,6 +54,7 @@ class RunErrors {
   const std::vector<std::vector<double>>& correlation() const { return correlation_; }
   // The error of one value of row k of the log.
   ResultError of(std::size_t k, const Value& value) const;
+  ResultError of(const Result& result) const;
 
  private:
   std::vector<ErrorSource> sources_;

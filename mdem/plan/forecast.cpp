@@ -30,7 +30,9 @@ double expected(const Demands& f, const TubeType& type, double Limits::*limit) {
 std::string gentle_ramp(const Prepared& p, double part) {
   const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
   if (!load || !(load->rate() > 0)) return "ramp the moment";
-  return fmt::format("a ramp of {:.2g} nN nm/ps would be gentle", load->rate() * std::sqrt(part) / units::nN_nm);
+  const double rate = load->rate() * std::sqrt(part);
+  return fmt::format("a ramp of {:.2g} nN nm/ps, over {:.3g} ps, would be gentle", rate / units::nN_nm,
+                     load->largest() / rate);
 }
 
 // By length: 1 where a strand is one tube.

@@ -1,12 +1,12 @@
 // Notes on a scene before and after a run: grades, warnings, error bars.
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "io/grade.hpp"
+#include "io/toml_text.hpp"
 #include "model/self_contact.hpp"
 #include "observe/bending.hpp"
 #include "observe/centre_line.hpp"
@@ -54,7 +54,7 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
 
 // A key of earlier scenes, which belongs to a pair of elements.
 void warn_of_viscosity_per_pair(const Scene& scene, std::vector<std::string>& warnings) {
-  const toml::table top = toml::parse(scene.text);
+  const toml::table top = parsed_toml(scene.text, scene.path);
   const double typed = top["damping"]["contact_viscosity_eV_ps_per_nm2"].value_or(0.0);
   if (!(typed > 0)) return;
   const double own = own_element_length(scene);

@@ -9,6 +9,7 @@
 #include "model/error.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/refuse_state.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/state_files.hpp"
@@ -52,7 +53,7 @@ void check_length_of_law(const Scene& scene) {
   const ContactLawKind* kind = contact_law_kind(scene.contact.law);
   const double own = scene.parameters().element_length;
   if (kind && !kind->any_element_length && std::fabs(scene.element_length / own - 1) > 1e-6)
-    throw InputError({scene.path, 0, "--law"},
+    throw InputError(place_in(scene, "--law"),
                      fmt::format("law \"{}\" holds for elements of {:.6g} nm, and these have {:.6g} nm", kind->name,
                                  own, scene.element_length),
                      "use a set with the line law, or --law none");
@@ -125,11 +126,11 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
-  EvaluatedState out{build(scene), Forces(), ""};
+  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces(), ""};
   for (std::size_t type = 0; scene.bond.anharmonic && s.free_length > 0 && type < scene.sets.size(); ++type)
     out.built.topology.types[type].bond = scene.sets[type].anharmonic_bond(s.free_length);
   if (!(s.free_length > 0)) out.note = note_of_collapse(scene.sets, out.built.topology, out.built.state);
-  Interaction interaction = interaction_of(scene, out.built.law);
+  Interaction& interaction = out.interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
   begin_with(scene.memory, out.built.topology, interaction);
   out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference, {scene.path, 0, ""});

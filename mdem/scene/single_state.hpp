@@ -25,7 +25,9 @@ struct SingleState {
 };
 
 struct EvaluatedState {
+  std::vector<ParameterSet> sets;
   BuiltScene built;
+  Interaction interaction;
   Forces forces;
   std::string note;  // what the energy depends on and a state does not say; may be empty
 };

@@ -191,13 +191,57 @@ class ObserverTest(FolderTest):
             simulation.step(10)
         self.assertEqual(simulation.step_number, 3)
 
-    def test_they_cannot_step(self):
+    def test_they_cannot_move_the_simulation(self):
+        """Each call that moves the state, from each kind of function that a simulation calls."""
+        scene = ropewalk.Scene(ROPE)
+        begin = ropewalk.Simulation(scene).checkpoint()
+        moves = {"step": lambda s: s.step(), "step_until": lambda s: s.step_until(1), "relax": lambda s: s.relax(),
+                 "restore": lambda s: s.restore(begin)}
+        for name, move in moves.items():
+            for kind in ("hook", "observer", "force"):
+                with self.subTest(f"{name} in a {kind}"):
+                    called = []
+
+                    def force(now, move=move, called=called):
+                        if now.step == 2:
+                            called.append(1)
+                            move(simulation)
+
+                    simulation = ropewalk.Simulation(scene, forces=[force] if kind == "force" else [])
+                    if kind == "hook":
+                        simulation.add_hook(lambda s, move=move: s.step_number == 2 and move(s))
+                    if kind == "observer":
+                        simulation.add_observer(lambda s, move=move: s.step_number == 2 and move(s), 1)
+                    with self.assertRaisesRegex(ropewalk.Error, f"cannot {name.split('_')[0]} the simulation that calls it"):
+                        simulation.step(4)
+                    self.assertLessEqual(simulation.step_number, 2)
+                    simulation.step(0)
+
+    def test_what_is_read_changes_nothing(self):
+        """Each call that reads, from an observer."""
+        read = {"repr": repr, "state": lambda s: s.state.position.sum(), "force": lambda s: s.force.sum(),
+                "energies": lambda s: s.energies, "measure": lambda s: s.measure("kinetic_eV"),
+                "checkpoint": lambda s: s.checkpoint(), "write_state": lambda s: s.write_state("now.csv"),
+                "save": lambda s: s.save("now.bin"), "largest_force": lambda s: s.largest_force_eV_per_nm}
+        plain = ropewalk.Simulation(ROPE)
+        plain.step(6)
+        for name, look in read.items():
+            with self.subTest(name):
+                simulation = ropewalk.Simulation(ROPE)
+                simulation.add_observer(look, 2)
+                simulation.step(6)
+                np.testing.assert_array_equal(plain.state.position, simulation.state.position)
+
+    def test_numbers_are_real_and_finite(self):
         simulation = ropewalk.Simulation(ROPE)
-        simulation.add_observer(lambda s: s.step(), 1)
-        with self.assertRaisesRegex(ropewalk.Error, "cannot step"):
-            simulation.step()
-        with self.assertRaises(ValueError):
-            simulation.add_observer(print, 0)
+        calls = (simulation.step, simulation.step_until, simulation.relax, lambda x: simulation.relax(energy=x),
+                 lambda x: simulation.relax(max_steps=x), lambda x: simulation.add_observer(print, x),
+                 lambda x: simulation.add_hook(print, x), lambda x: setattr(simulation, "divided", x))
+        for call in calls:
+            for wrong in (float("nan"), float("inf"), -1, 1j, "1", None if call is simulation.step else float("-inf")):
+                with self.assertRaises((ValueError, TypeError)):
+                    call(wrong)
+        self.assertEqual(simulation.step_number, 0)
 
 
 class MeasureTest(FolderTest):
@@ -300,7 +344,7 @@ class MeasureTest(FolderTest):
     def test_numbers_of_steps_have_an_end(self):
         simulation = ropewalk.Simulation(ROPE)
         for call in (simulation.step, lambda n: simulation.relax(max_steps=n)):
-            with self.assertRaisesRegex(ValueError, "is no number of steps: give 0 to"):
+            with self.assertRaisesRegex(ValueError, ": give 0 to"):
                 call(10**30)
 
     def test_forces_are_the_slope_of_the_energy(self):
@@ -407,6 +451,7 @@ class InterruptTest(FolderTest):
         refused = 0
         while thread.is_alive():
             try:
+                self.assertIn("Simulation of", repr(simulation))
                 simulation.time_ps
             except RuntimeError as e:
                 self.assertIn("another thread", str(e))

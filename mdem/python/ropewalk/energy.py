@@ -10,6 +10,7 @@ from typing import Optional, Union
 import numpy as np
 
 from . import _core
+from .numbers import real_array
 from .parameters import ParameterSet
 from .scene import Scene
 from .simulation import Energies, Simulation
@@ -73,7 +74,8 @@ def energy(
             found = _core.energy_of_simulation(state._core, reference)
         else:
             flat = state.start.flat
-            found = _core.energy_in_scene(state._core, flat.position, flat.orientation, reference)
+            found = _core.energy_in_scene(state._core, real_array(flat.position, "position"),
+                                          real_array(flat.orientation, "orientation"), reference)
     else:
         one = isinstance(parameters, (str, os.PathLike, ParameterSet))
         sets: Sequence[SetName] = [parameters] if one else parameters  # type: ignore[list-item,assignment]
@@ -85,7 +87,8 @@ def energy(
             given = state.state if isinstance(state, Simulation) else state.start if isinstance(state, Scene) else state
             flat = given.flat
             found = _core.energy_of_state(
-                given.tube_begin.tolist(), flat.position, flat.orientation, given.element_length_nm, options
+                given.tube_begin.tolist(), real_array(flat.position, "position"),
+                real_array(flat.orientation, "orientation"), given.element_length_nm, options
             )
         else:
             found = _core.energy_of_file(os.fspath(state), options)

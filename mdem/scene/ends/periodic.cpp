@@ -12,6 +12,7 @@
 #include "scene/key_table.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/schedule_rows.hpp"
 
 namespace ropewalk {
@@ -79,15 +80,17 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                      "tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
-                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
+                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)
+           .of_pace(SceneKey::Pace::course),
        Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
-                   "by which the slice is drawn out from the first of these times on, [[ps, strain], ...]",
-                   read_strain),
+                   "strain of the slice against time, [[ps, strain], ...], from the first of these times on",
+                   read_strain)
+           .of_pace(SceneKey::Pace::course),
        Key::custom(
            "tension_nN", "nN", otherwise("[[0, 0]]", "the slice keeps its length"),
-           "of the rope until the first time of strain, in time; the slice then takes the length that it asks "
-           "for",
-           read_tension)},
+           "tension of the rope against time, until strain begins; until then the length of the slice is free",
+           read_tension)
+           .of_pace(SceneKey::Pace::course)},
       check_slice};
   return table;
 }
@@ -151,7 +154,7 @@ void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, c
       if (images.count(e) == 0) continue;
       const int tube = topology.tube_of(e);
       throw InputError(
-          {scene.path, 0, "load.elements"},
+          place_in(scene, "load.elements"),
           fmt::format("element {} of tube {} is an image of the slice, and a load on it has no effect",
                       e - topology.tube_begin[tube], tube),
           topology.strands() < topology.tubes()

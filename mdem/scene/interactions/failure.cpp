@@ -271,9 +271,8 @@ const KeyTable<FailureDrive>& failure_table() {
       {Key::number(
            "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
            otherwise("0.16", "required but for from and moment_nN_nm"),
-           "of a tube, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
-           "0.12 "
-           "in experiments (DOI 10.1126/science.287.5453.637)"),
+           "strain at which a tube breaks: 0.16 without defects (DOI 10.1103/PhysRevB.65.235430), 0.02 to 0.12 in "
+           "experiments (DOI 10.1126/science.287.5453.637)"),
        Key::word(
            "from", Words<bool>{{"atoms", true}}, [](auto& d) -> auto& { return d.law.from_atoms; },
            otherwise("\"atoms\"", "a strain of your own"),
@@ -290,7 +289,7 @@ const KeyTable<FailureDrive>& failure_table() {
            otherwise("15", "never"), "bending moment at which a bond breaks too"),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
-           "of the scatter")},
+           "seed of the scatter")},
       [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
         if (!t.has("strain") && !t.has("from") && !t.has("moment_nN_nm"))
           throw t.error("strain", "is missing", "write one, or from = \"atoms\", or moment_nN_nm");
