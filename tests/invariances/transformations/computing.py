@@ -135,6 +135,7 @@ def time_step_halved(case):
     skip_if("thermostat" in scene, "another step has other noise")
     skip_if(scene.get("twist", {}).get("geometric_only"), "spins jump back at every increment")
     skip_if(scene.has_memory() and ("links" in scene or "failure" in scene), "what forms and breaks does so at steps")
+    skip_if(any("breaks_at_nm" in tether for tether in scene.list("tether")), "what breaks does so at a step")
     step = case.double.manifest["time_step_fs"]
     fine = case.run(scene.with_keys(run={"time_step_fs": 0.5 * step})).log
     names = ("stretch_eV", "bend_eV", "twist_eV", "vdw_eV", "work_eV", "dissipated_eV", "ends_apart_nm", "rotation_deg",
