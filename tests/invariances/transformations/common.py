@@ -17,7 +17,7 @@ def compare_rounding(case, first, second, within=1e-7, **how):
         same_columns(first.log, second.log, 2e-4, 1e-6, only=energies, last=True)
     else:
         leave = (*how.pop("leave", ()), *(OF_A_ROPE if case.scene.source == "film" else ()))
-        same_columns(first.log, second.log, within, rounding=3e-8, leave=leave, **how)
+        same_columns(first.log, second.log, within, rounding=3e-8, leave=leave, floor=1e-9, **how)
 
 
 # What these columns say of a film has no meaning, and rounding decides some of them.

@@ -75,7 +75,8 @@ def noise_of_another_run(case):
     if "periodic" not in strong:
         shutil.copy(first / "final.csv", case.folder / "final.csv")
         others["going on"] = strong.with_keys(**{strong.source: None}).with_keys(
-            state={"file": "final.csv"}, start={"temperature_K": None, "may_cool": None},
+            state={"file": "final.csv"}, start={k: None for k in (
+                "temperature_K", "may_cool", "twist_deg_per_nm", "wave_nm", "half_waves")},
             run={"time_step_fs": first.manifest["time_step_fs"]})
     for name, other in others.items():
         out = case.run(other)

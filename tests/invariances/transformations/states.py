@@ -206,7 +206,8 @@ def energy_of_a_turned_state(case):
     same_energies(first, other)
     scale = max(max(map(abs, f)) for f in first["force_eV_per_nm"])
     for k, (f, g) in enumerate(zip(first["force_eV_per_nm"], other["force_eV_per_nm"])):
-        if max(abs(x - y) for x, y in zip(turned(f, turn), g)) > 1e-7 * scale + 1e-9:
+        # Thousands of nm away the last bit of a position is a force of some 1e-8 eV/nm.
+        if max(abs(x - y) for x, y in zip(turned(f, turn), g)) > 1e-7 * scale + 1e-7:
             raise Differs(f"force on element {k}")
     state.each(lambda r, q, v, w: ((-r[0], r[1], r[2]), (q[0], q[1], -q[2], -q[3]), v, w))
     same_energies(first, case.energy(state, scene))
