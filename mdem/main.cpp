@@ -428,6 +428,10 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->add_option("--element-length-nm", v.energy.options.element_length,
                 "Length of an element [default: what the state file says, else the set's]")
       ->check(number_within(Bounds::range(0.05, 50)));
+  c->add_option("--free-length-nm", v.energy.options.free_length,
+                "Length of the tubes between what holds them in a scene, by which twisted tubes collapse [default: "
+                "the whole length]")
+      ->check(number_within(Bounds::positive()));
   c->add_option("--exclude-along-tube-nm", v.energy.options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
       ->check(number_within(Bounds::positive()));

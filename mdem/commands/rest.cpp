@@ -26,7 +26,7 @@ constexpr double of_the_default = 0.1;
 
 double viscosity_of(const RestArguments& a, const Scene& scene) {
   if (a.viscosity) return *a.viscosity;
-  const double standard = contact_viscosity(default_viscosity, scene.element_length, scene.parameters().radius);
+  const double standard = contact_viscosity(default_viscosity, scene.element_length, scene.sets);
   return scene.damping.contact.eta == standard ? of_the_default * default_viscosity : -1;
 }
 

@@ -10,6 +10,7 @@ docs/how-to/invariance.md says how to add a transformation.
 """
 import argparse
 import datetime
+import importlib
 import pathlib
 import shutil
 import sys
@@ -19,7 +20,10 @@ import traceback
 
 sys.dont_write_bytecode = True
 from bench import Bench, Differs, HERE, Skip  # noqa: E402
-from table import TRANSFORMATIONS  # noqa: E402
+from transformations.common import TRANSFORMATIONS  # noqa: E402
+
+for module in sorted((HERE / "transformations").glob("*.py")):
+    importlib.import_module(f"transformations.{module.stem}")
 
 
 def arguments():

@@ -33,6 +33,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
@@ -300,7 +301,7 @@ const KeyTable<FailureDrive>& failure_table() {
           throw t.error("strain_deviation", "stands without strain", "give the mean strain too");
         refuse_beyond_data(t, scene, failure.law);
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
-        if (!(failure.law.reference > 0)) failure.law.reference = scene.parameters().element_length;
+        if (!(failure.law.reference > 0)) failure.law.reference = own_element_length(scene);
         if (failure.law.deviation > 0.34 * failure.law.strain)
           throw t.error("strain_deviation", "is more than a third of strain: some bonds would break at rest",
                         fmt::format("take at most {:.2g}", failure.law.strain / 3));

@@ -170,7 +170,7 @@ void RopeSource::place(const Scene& scene, double spacing_of_tubes, Random& rand
                        scene.element_length, topology, state);
   // The same in all waves that the elements can show, whatever their length.
   if (perturbation > 0)
-    displace(perturbation * std::sqrt(scene.parameters().element_length / scene.element_length), random, state);
+    displace(perturbation * std::sqrt(own_element_length(scene) / scene.element_length), random, state);
 }
 
 std::string RopeSource::description(const Topology& t, const State&, double spacing_of_tubes) const {
