@@ -246,7 +246,7 @@ int errors_command(const ErrorsArguments& a) {
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
   const RunInputs as_it_was = inputs_of(run.dir, run.scene);
   for (const NumericRun& r : plan.runs)
-    repeats.add(r.words, r.cost, [&] {
+    repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);

@@ -157,6 +157,10 @@ NumericErrors read_numeric_errors(const std::string& run_directory, const std::v
     texts.insert(texts.end(), runs.remarks.begin(), runs.remarks.end());
     for (const std::string& text : texts)
       if (has_control_character(text)) throw std::runtime_error("a control character");
+    std::vector<std::string> folders = runs.starts;
+    for (const NumericSource& s : runs.sources) folders.push_back(s.folder);
+    for (const std::string& folder : folders)
+      if (!is_plain_name(folder)) throw std::runtime_error("a directory elsewhere");
   } catch (const std::exception&) {
     throw InputError({path, 0, ""}, "is not what `ropewalk errors --numerics` writes",
                      "make it again, or take it away");
