@@ -316,7 +316,8 @@ def order_of_types(case):
     made = case.run(first, "--steps", 10)
     state = made.state().without_memory()
     one = first.with_keys(**{first.source: None}, state={"file": "types-1.csv"},
-                          start={k: None for k in ("temperature_K", "may_cool", "wave_nm", "half_waves")})
+                          start={k: None for k in (
+                              "temperature_K", "may_cool", "twist_deg_per_nm", "wave_nm", "half_waves")})
     if not one.relaxes():
         one = one.with_keys(run={"duration_ps": 3, "time_step_fs": float(f"{0.7 * made.manifest['time_step_fs']:.3g}")})
     two = one.with_keys(parameters=sets[::-1], tube_types=[1 - t for t in types], state={"file": "types-2.csv"})
