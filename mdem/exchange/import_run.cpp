@@ -96,6 +96,7 @@ class Import {
     account.kinetic = from.kinetic;
     account.work = from.work;
     account.dissipated = from.dissipated;
+    account.heat = from.heat;
     account.first_energy = checkpoint_.first_energy;
     account.first = first_;
     account.ends = readings_at(state);
@@ -119,15 +120,16 @@ class Import {
       listener_.tell(line);
   }
 
-  // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
+  // Judges the energy balance as the step control of `run` does, over a window of at least the same length.
   void check_account(const EnergyAccount& account, std::int64_t step) {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
-    const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
+    const EnergyMark now{account.potential.potential() + account.kinetic,
+                         {account.work, account.dissipated, account.heat}};
     const bool closes = account_closes(mark_, now, account.kinetic, account.potential.bonds(),
                                        account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
-          "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
+          "note: from step {} to {} the energy balance does not close. `run` would have gone back and divided "
           "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
           "again",
           marked_at_, step, prepared_.time_step / units::fs));
@@ -156,7 +158,7 @@ class Import {
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.set_memory(memory_);
-    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
+    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated, last_.heat});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);
     checkpoint_.frames = (*frames_)->mark();

@@ -13,7 +13,7 @@
 #include <initializer_list>
 #include <new>
 
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "sim/threads/threads.hpp"
 
 namespace ropewalk {
@@ -40,7 +40,7 @@ void give_up_the_reserve() {
   try {
     if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
   } catch (const std::exception& e) {
-    tell_failure(program_name, e);
+    report_error(program_name, e);
   } catch (...) {
   }
   _exit(3);

@@ -293,9 +293,10 @@ void FixStates::write() {
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {
-    const auto [work, dissipated] = motion->account();
-    state.header.work = work;
-    state.header.dissipated = dissipated;
+    const EnergySupply account = motion->account();
+    state.header.work = account.work;
+    state.header.dissipated = account.dissipated;
+    state.header.heat = account.heat;
   }
   const auto n = static_cast<std::size_t>(atom->nlocal);
   std::vector<int> to(n);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 
 namespace ropewalk {
@@ -32,7 +32,7 @@ void report_or_tell(const RunDirectory& dir, RunListener& listener, const std::f
   try {
     write();
   } catch (const std::exception& e) {
-    listener.tell(fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir.path));
+    listener.tell(fmt::format("no report: {}; make it with: ropewalk report {}", error_words(e), dir.path));
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "run/dynamics_loop.hpp"
@@ -166,7 +166,7 @@ RunResult Run::failed(const NumericalError& e) {
 
 // The last good state is saved if that is still possible.
 RunResult Run::broken_off(const std::exception& e) {
-  const std::string why = failure_words(e);
+  const std::string why = error_words(e);
   std::exception_ptr error = std::current_exception();
   try {
     parts_.checkpoints.save_snapshot();

@@ -11,7 +11,7 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/packing.hpp"
 #include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
@@ -233,7 +233,7 @@ BuiltScene build(Scene& scene) {
   draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
-  out.topology.groups.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
+  out.topology.groups.ends_meet = ends_meet(scene, out.topology);
   set_collapse(scene, out.topology);
   check_state(scene, out);
   if (scene.lineage != 0) random = Random(lineage_key(scene.start.seed, scene.lineage));

@@ -68,7 +68,7 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
     if (h.step < 0 || h.step > largest_step) fail(fmt::format("{} is no step", h.step));
-    for (const double value : {h.time, h.work, h.dissipated, h.skin})
+    for (const double value : {h.time, h.work, h.dissipated, h.heat, h.skin})
       if (!(std::fabs(value) <= largest_number)) fail("holds a number that is not finite");
     if (s.end() > bytes) break;
     found.push_back(s);

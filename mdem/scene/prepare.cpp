@@ -11,6 +11,7 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/refuse_state.hpp"
 #include "scene/scene_place.hpp"
 #include "scene/state_files.hpp"
@@ -79,7 +80,7 @@ void refuse_expectations(const Scene& scene, double duration) {
     const Expectation& e = scene.expected[k];
     const auto at = [&](const char* key) { return place_in(scene, key, static_cast<int>(k)); };
     column_of_log(e.column, at("expect.column"));
-    if (!e.at) continue;
+    if (!e.at || e.of_other_scene) continue;
     if (relaxes)
       throw InputError(at("expect.at_ps"), "is a time, and a relaxation has none",
                        "take it away: the last row is judged");
@@ -284,9 +285,13 @@ Prepared prepare(Scene& scene) {
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
-  if (scene.from_file())
-    refuse_overlaps(out.topology, out.interaction, out.state, {scene.source->file(), 0, ""},
-                    scene.run.mode == RunOptions::Mode::relax);
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  const bool typed = rope && !rope->typed_places.empty();
+  if (scene.from_file() || typed)
+    refuse_overlaps(
+        out.topology, out.interaction, out.state,
+        typed ? InputError::Place{scene.path, 0, "rope.places_nm"} : InputError::Place{scene.source->file(), 0, ""},
+        scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
   return out;

@@ -70,6 +70,28 @@ void check_types(const SingleState& s) {
                        fmt::format("types run from 0 to {}", sets - 1));
 }
 
+// Tubes beyond the twist at which tubes of their whole length collapse: between held ends they collapse later.
+std::string note_of_collapse(const std::vector<ParameterSet>& sets, const Topology& topology, const State& state) {
+  long beyond = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    const auto& known = sets[static_cast<std::size_t>(topology.tube_type[static_cast<std::size_t>(t)])].anharmonic;
+    if (!type.bond.anharmonic.used || !known || !(type.bond.anharmonic.max_shear < known->max_shear)) continue;
+    const double most = type.bond.anharmonic.max_shear / type.radius * type.element_length;
+    for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      beyond +=
+          std::fabs(bond_twist_angle(frame_of(state.orientation[k]), frame_of(state.orientation[k + 1]))) > most;
+    }
+  }
+  if (beyond == 0) return "";
+  return fmt::format(
+      "{} bonds are twisted beyond the collapse of a tube of its whole length. Where a scene holds elements, the "
+      "tubes between them are shorter and collapse later. The energy of twist is then another one: give the free "
+      "length that `ropewalk check` prints, by --free-length-nm.",
+      beyond);
+}
+
 }  // namespace
 
 Forces forces_of(const Topology& topology, const Interaction& interaction, const State& state, bool reference,
@@ -104,8 +126,11 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
-  EvaluatedState out{build(scene), Forces()};
-  Interaction interaction = interaction_of(scene, out.built.law);
+  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces(), ""};
+  for (std::size_t type = 0; scene.bond.anharmonic && s.free_length > 0 && type < scene.sets.size(); ++type)
+    out.built.topology.types[type].bond = scene.sets[type].anharmonic_bond(s.free_length);
+  if (!(s.free_length > 0)) out.note = note_of_collapse(scene.sets, out.built.topology, out.built.state);
+  Interaction& interaction = out.interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
   begin_with(scene.memory, out.built.topology, interaction);
   out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference, {scene.path, 0, ""});

@@ -440,11 +440,6 @@ double state_element_length(const std::string& path) {
   return csv.next() && csv.next() ? stated_length(csv) : 0;
 }
 
-bool state_has_strands(const std::string& path) {
-  CsvReader csv(path);
-  return csv.next() && csv.next() && !stated_strands(csv).empty();
-}
-
 StateNotes read_state_notes(const std::string& path) {
   CsvReader csv(path);
   StateNotes notes;

@@ -33,8 +33,6 @@ void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 // The length (nm) that a state file states; 0 where it states none. Throws InputError.
 double state_element_length(const std::string& path);
-// Whether the file says that its tubes follow one another in strands (TubeGroups::strand_begin).
-bool state_has_strands(const std::string& path);
 
 StateNotes read_state_notes(const std::string& path);
 

@@ -1,5 +1,5 @@
 // LAMMPS as a child process: its messages, and every way in which it can end.
-#include "atomistic/lammps.hpp"
+#include "atoms/lammps.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include <sstream>
 #include <thread>
 
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 #include "signals.hpp"
 
 namespace ropewalk::calibrate {

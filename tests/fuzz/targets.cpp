@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "atomistic/potential.hpp"
 #include "atomistic/stiffness.hpp"
+#include "atoms/potential.hpp"
 #include "campaign/sweep_file.hpp"
 #include "chart/point.hpp"
 #include "io/files.hpp"
@@ -307,7 +307,7 @@ void settings(const std::string& bytes) {
 
 void potential(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { calibrate::user_potential(file.path()); });
+  taken_or_refused([&] { user_potential(file.path()); });
 }
 
 }  // namespace

@@ -286,6 +286,37 @@ class MeasureTest(FolderTest):
         with self.assertRaises(TypeError):
             ropewalk.energy(simulation.state)
 
+    def test_energy_has_what_friction_links_and_broken_tubes_remember(self):
+        simulation = ropewalk.Simulation({
+            "parameters": "cnt-10-10-tersoff", "rope": {"tubes": 7, "length_nm": 14},
+            "links": [{"per_nm": 0.3, "stiffness_nN_per_nm": 100, "breaks_at_nN": 5}],
+            "failure": {"strain": 0.02}, "friction": [{"from": "atoms"}], "contact": {"precision": "double"},
+            "grip": [{"end": "lower"}, {"end": "upper", "z": {"strain": [[0, 0], [3, 0.05]]}}],
+            "run": {"duration_ps": 4},
+        })
+        simulation.step_until(4)
+        self.assertGreater(simulation.measure("bonds_broken"), 0)
+        self.assertGreater(abs(simulation.energies.terms), 0.01)
+        for reference in (False, True):
+            found = ropewalk.energy(simulation, reference=reference)
+            for name in ("stretch", "bend", "vdw", "terms"):
+                self.assertAlmostEqual(getattr(found, name), getattr(simulation.energies, name), delta=1e-6)
+
+    def test_energy_of_a_collapsed_tube_needs_its_free_length(self):
+        simulation = ropewalk.Simulation({
+            "parameters": "cnt-10-10-tersoff", "rope": {"tubes": 1, "length_nm": 14},
+            "grip": [{"end": "lower"}, {"end": "upper", "about_z": {"rotation_deg": [[0, 0], [4, 55]]}}],
+            "run": {"duration_ps": 8},
+        })
+        simulation.step_until(8)
+        simulation.write_state("state.csv")
+        with self.assertLogs("ropewalk", "WARNING") as said:
+            short = ropewalk.energy("state.csv", "cnt-10-10-tersoff")
+        self.assertIn("beyond the collapse", said.output[0])
+        self.assertGreater(abs(short.twist - simulation.energies.twist), 1e-3)
+        whole = ropewalk.energy("state.csv", "cnt-10-10-tersoff", free_length_nm=9 * 1.3775870846515064)
+        self.assertAlmostEqual(whole.twist, simulation.energies.twist, delta=1e-6)
+
     def test_energy_is_a_number_or_an_error(self):
         start = ropewalk.Scene(ROPE).start
 

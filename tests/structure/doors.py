@@ -50,7 +50,7 @@ RESULT = "a result, which the manual names and which replaces no file of another
 MAY_APPEND = {
     "mdem/campaign/pilot_runs.cpp": FOLDER,
     "mdem/commands/convert.cpp": FOLDER,
-    "calibrate/atomistic/lammps.cpp": FOLDER,
+    "mdem/atoms/lammps.cpp": FOLDER,
     "calibrate/friction/sliding.cpp": FOLDER,
     "validate/cases/common/lammps_session.cpp": FOLDER,
     "mdem/commands/new.cpp": RESULT,

@@ -83,7 +83,7 @@ class Simulation:
     """A scene in motion, step by step. Forces, loads, damping and thermostat are those of `ropewalk run`.
 
     The motion is the same, bit for bit, on any number of threads, and however the steps are divided into calls. The
-    program also halves its step where the account of energy does not close, watches limits and ends by [[stop]]; here you
+    program also halves its step where the energy balance does not close, watches limits and ends by [[stop]]; here you
     see all of it by measure("balance_eV"), measure("kinked") and so on, and set `divided` yourself.
 
     Another Python thread may run while this one steps. The simulation itself belongs to one thread at a time.

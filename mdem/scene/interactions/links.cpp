@@ -176,11 +176,12 @@ const KeyTable<LinksDrive>& links_table() {
            otherwise("0.1", "0"), "links per length of contact of two tubes at the start, at random places"),
        Key::integer(
            "at_ends", 0, 100, [](auto& d) -> auto& { return d.law.at_ends; }, standard(),
-           "links of each end of a tube with tubes beside it"),
+           "number of links from each end of a tube to the tubes beside it"),
        Key::number(
            "placed_at_ps", unit::ps, Bounds::non_negative(longest_time),
            [](auto& d) -> auto& { return d.law.placed_at; }, standard(),
-           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun"),
+           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun")
+           .of_pace(SceneKey::Pace::time),
        Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
                    "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
                    "elements from the end",
@@ -211,13 +212,13 @@ const KeyTable<LinksDrive>& links_table() {
        Key::number(
            "most_per_nm", per_nm, Bounds::positive(100), [](auto& d) -> auto& { return d.law.most; },
            otherwise("1", "required by forming_per_nm_ps"),
-           "links of this table per length of a tube beyond which none form"),
+           "largest number of links of this table per length of tube; beyond it no more form"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types that they join, from 0; this pair is then this table's alone",
                    read_linked_types),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
-           "of the random places")},
+           "seed of the random places")},
       check_links};
   return table;
 }

@@ -254,7 +254,8 @@ const KeyTable<TetherDrive>& tether_table() {
        Key::number("stiffness_nN_per_nm", {"nN/nm", units::nN_nm}, Bounds::positive(1e4), &TetherDrive::k,
                    required("0.1"), "pull per stretch of the tether"),
        Key::number("rest_nm", unit::nm, Bounds::non_negative(1e6), &TetherDrive::rest,
-                   otherwise("5", "as it starts"), "length without force; shorter, it pushes"),
+                   otherwise("5", "as it starts"),
+                   "length at which the tether has no force; below it, the tether pushes"),
        Key::number("breaks_at_nm", unit::nm, Bounds::positive(1e6), &TetherDrive::breaks_at,
                    otherwise("8", "never"), "length beyond which it breaks for good")},
       check_ends};

@@ -1,4 +1,4 @@
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -202,4 +202,4 @@ Potential user_potential(const std::string& path) {
   return potential;
 }
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

@@ -1,4 +1,4 @@
-#include "atomistic/lammps.hpp"
+#include "atoms/lammps.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 #include "io/files.hpp"
 #include "io/removal.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,4 +233,4 @@ void run_lammps(const std::string& folder, const std::string& name, const std::s
     fail("left an incomplete log", "check the disk and the folder");
 }
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

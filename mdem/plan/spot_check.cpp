@@ -1,4 +1,4 @@
-#include "plan/check.hpp"
+#include "plan/spot_check.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 namespace {
 
 using units::pi;
@@ -65,31 +65,51 @@ LatticeVector vector_of_height(Chirality c, long hexagons) {
   return {static_cast<int>(p), static_cast<int>(q)};
 }
 
+SiteRows::SiteRows(Chirality c) : c_(c) {
+  check(c);
+  g_ = std::gcd(c.n, c.m);
+  bezout(c.n, c.m, x_, y_);
+}
+
+void SiteRows::between(long from, long to, const std::function<void(const SiteRow&)>& visit) const {
+  for (const bool second : {false, true}) {
+    // Heights in thirds, where the second atom is a whole number: 3 (n j - m i) + (n - m).
+    const long offset = second ? c_.n - c_.m : 0;
+    for (long k = ceil_div(from - offset, 3 * g_); k < ceil_div(to - offset, 3 * g_); ++k) {
+      long i = -y_ * k, j = x_ * k;
+      const long turns = floor_div(arc(c_, i, j), full_arc(c_));  // bring it next to the seam
+      i -= turns * c_.n;
+      j -= turns * c_.m;
+      visit({{static_cast<int>(i), static_cast<int>(j), second}, 3 * g_ * k + offset, static_cast<int>(g_)});
+    }
+  }
+}
+
+long SiteRows::sites_between(long from, long to) const {
+  long rows = 0;
+  for (const long offset : {0L, static_cast<long>(c_.n - c_.m)})
+    rows += ceil_div(to - offset, 3 * g_) - ceil_div(from - offset, 3 * g_);
+  return rows * g_;
+}
+
 std::vector<Site> strip_sites(Chirality c, long hexagons) {
   check(c);
   const long g = std::gcd(c.n, c.m);
   if (hexagons <= 0 || hexagons % g != 0)
     throw std::invalid_argument("the hexagons of a strip must be a positive multiple of gcd(n,m)");
-
-  long x = 0, y = 0;
-  bezout(c.n, c.m, x, y);  // height of (p, q) = (-y, x) is g
   std::vector<Site> sites;
   sites.reserve(static_cast<std::size_t>(2 * hexagons));
-  for (const bool second : {false, true}) {
-    // Heights in thirds, where the second atom is a whole number: 3 (n j - m i) + (n - m).
-    const long offset = second ? c.n - c.m : 0;
-    const long first = ceil_div(-offset, 3 * g), last = ceil_div(3 * hexagons - offset, 3 * g);
-    for (long k = first; k < last; ++k) {
-      // All (i, j) of height k g differ by multiples of C/g, so that there are g of them around the tube.
-      for (long turn = 0; turn < g; ++turn) {
-        long i = -y * k + turn * (c.n / g), j = x * k + turn * (c.m / g);
-        const long turns = floor_div(arc(c, i, j), full_arc(c));  // bring it next to the seam
-        i -= turns * c.n;
-        j -= turns * c.m;
-        sites.push_back({static_cast<int>(i), static_cast<int>(j), second});
-      }
+  SiteRows(c).between(0, 3 * hexagons, [&](const SiteRow& row) {
+    for (int k = 0; k < row.sites; ++k) {
+      Site site = row.first;
+      site.i += k * static_cast<int>(c.n / g);
+      site.j += k * static_cast<int>(c.m / g);
+      const long turns = floor_div(arc(c, site.i, site.j), full_arc(c));
+      site.i -= static_cast<int>(turns) * c.n;
+      site.j -= static_cast<int>(turns) * c.m;
+      sites.push_back(site);
     }
-  }
+  });
   return sites;
 }
 
@@ -105,17 +125,21 @@ long height_in_thirds(Chirality c, const Site& site) {
   return 3 * height(c, site.i, site.j) + (site.second ? c.n - c.m : 0);
 }
 
-Vector3 place(Chirality c, const Site& site, const TubeShape& shape) {
+Polar polar(Chirality c, const Site& site, const TubeShape& shape) {
   const long third = site.second ? 1 : 0;
   const double arc_thirds = static_cast<double>(3 * arc(c, site.i, site.j) + third * 3 * (c.n + c.m));
   const double z0 = static_cast<double>(height_in_thirds(c, site)) / 3.0 * shape.length_per_hexagon;
-  double phi = 2.0 * pi * arc_thirds / (3.0 * static_cast<double>(full_arc(c))) + shape.twist * z0;
-  double z = z0;
+  Polar at{2.0 * pi * arc_thirds / (3.0 * static_cast<double>(full_arc(c))) + shape.twist * z0, z0};
   if (site.second) {
-    phi += shape.arc_shift;
-    z += shape.height_shift;
+    at.phi += shape.arc_shift;
+    at.z += shape.height_shift;
   }
-  return {shape.radius * std::cos(phi), shape.radius * std::sin(phi), z};
+  return at;
+}
+
+Vector3 place(Chirality c, const Site& site, const TubeShape& shape) {
+  const Polar at = polar(c, site, shape);
+  return {shape.radius * std::cos(at.phi), shape.radius * std::sin(at.phi), at.z};
 }
 
 TubeCell tube_cell(Chirality c, LatticeVector period, double a) {
@@ -196,4 +220,4 @@ std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, doubl
   return periods;
 }
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

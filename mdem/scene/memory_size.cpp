@@ -1,4 +1,4 @@
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 
 struct Potential {
   std::string name;                   // "tersoff", "airebo", "rebo", "lcbop", or "user"
@@ -23,4 +23,4 @@ Potential find_potential(const std::string& name);
 // A file with the user's own pair_style and pair_coeff lines (one atom type, metal units).
 Potential user_potential(const std::string& path);
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

@@ -1,4 +1,4 @@
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +19,8 @@ namespace ropewalk {
 namespace {
 
 template <class E>
-const E* as(const std::exception& failure) {
-  return dynamic_cast<const E*>(&failure);
+const E* as(const std::exception& error) {
+  return dynamic_cast<const E*>(&error);
 }
 
 std::string no_output(int code) {
@@ -31,41 +31,41 @@ std::string no_output(int code) {
 constexpr const char* no_memory =
     "the memory does not suffice; take fewer or shorter tubes or fewer threads, or raise the limit (ulimit -v)";
 
-bool lacks_memory(const std::exception& failure) {
-  return as<std::bad_alloc>(failure) || as<std::length_error>(failure);
+bool lacks_memory(const std::exception& error) {
+  return as<std::bad_alloc>(error) || as<std::length_error>(error);
 }
 
 }  // namespace
 
-std::string failure_words(const std::exception& failure) {
+std::string error_words(const std::exception& error) {
   constexpr std::size_t longest = 4000;
-  if (lacks_memory(failure)) return no_memory;
-  if (as<nlohmann::json::exception>(failure))
+  if (lacks_memory(error)) return no_memory;
+  if (as<nlohmann::json::exception>(error))
     return fmt::format("a JSON file does not hold what it should; restore it or make it again ({})",
-                       printable(failure.what(), longest));
-  if (const auto* file = as<std::filesystem::filesystem_error>(failure))
+                       printable(error.what(), longest));
+  if (const auto* file = as<std::filesystem::filesystem_error>(error))
     return printable(file_error(file->path1().string(), "cannot be used", file->code().value()).what(), longest);
-  const auto* system = as<std::system_error>(failure);
+  const auto* system = as<std::system_error>(error);
   if (system && std::ferror(stdout)) return no_output(system->code().value());
   if (system)
-    return fmt::format("{}; {}", printable(failure.what(), longest), remedy_for_errno(system->code().value()));
-  return printable(failure.what(), longest);
+    return fmt::format("{}; {}", printable(error.what(), longest), remedy_for_errno(system->code().value()));
+  return printable(error.what(), longest);
 }
 
-int failure_code(const std::exception& failure) {
-  const bool input = as<InputError>(failure) || as<nlohmann::json::exception>(failure) ||
-                     as<std::filesystem::filesystem_error>(failure) ||
-                     (as<std::system_error>(failure) && std::ferror(stdout));
+int error_code(const std::exception& error) {
+  const bool input = as<InputError>(error) || as<nlohmann::json::exception>(error) ||
+                     as<std::filesystem::filesystem_error>(error) ||
+                     (as<std::system_error>(error) && std::ferror(stdout));
   return input ? 2 : 3;
 }
 
-int tell_failure(const char* program, const std::exception& failure) {
+int report_error(const char* program, const std::exception& error) {
   try {
-    std::fprintf(stderr, "%s: %s\n", program, failure_words(failure).c_str());
+    std::fprintf(stderr, "%s: %s\n", program, error_words(error).c_str());
   } catch (const std::bad_alloc&) {  // not even for the words
     std::fprintf(stderr, "%s: %s\n", program, no_memory);
   }
-  return failure_code(failure);
+  return error_code(error);
 }
 
 int code_at_exit(const char* program, int code) {

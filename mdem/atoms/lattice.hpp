@@ -16,12 +16,13 @@
 // Source: Saito, Dresselhaus, Dresselhaus, Physical Properties of Carbon Nanotubes (1998), DOI 10.1142/p080.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "model/bond.hpp"
 #include "model/tube.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 
 struct LatticeVector {
   int p = 0, q = 0;
@@ -47,6 +48,29 @@ struct Site {
   bool second = false;
 };
 
+// The sites of one height, evenly spaced around the tube: site k of them is `first` plus k times C/gcd(n,m).
+struct SiteRow {
+  Site first;
+  long height = 0;  // height_in_thirds
+  int sites = 0;    // gcd(n,m)
+};
+
+// The rows of a tube between two heights.
+class SiteRows {
+ public:
+  explicit SiteRows(Chirality c);
+
+  // Calls `visit` for every row with from <= height_in_thirds < to: those of the first sublattice in rising order,
+  // then those of the second one.
+  void between(long from, long to, const std::function<void(const SiteRow&)>& visit) const;
+  // The number of sites in them.
+  long sites_between(long from, long to) const;
+
+ private:
+  Chirality c_;
+  long g_ = 1, x_ = 0, y_ = 0;  // lattice vector (-y, x) has the height g
+};
+
 // All sites with 0 <= height < hexagons, each once: exactly two per hexagon. `hexagons` must be a multiple of
 // gcd(n,m); integers alone decide which atoms lie in the strip. Throws std::invalid_argument.
 std::vector<Site> strip_sites(Chirality c, long hexagons);
@@ -66,7 +90,11 @@ struct TubeShape {
 
 TubeShape rolled_shape(Chirality c, double a = graphene_lattice_constant);
 
-// Position of a site; site (0,0) lies at phi = 0, z = 0.
+// A site of the cylinder; site (0,0) lies at phi = 0, z = 0.
+struct Polar {
+  double phi = 0, z = 0;  // rad, nm
+};
+Polar polar(Chirality c, const Site& site, const TubeShape& shape);
 Vector3 place(Chirality c, const Site& site, const TubeShape& shape);
 
 struct TubeCell {
@@ -94,4 +122,4 @@ TwistedCell twisted_cell_near(Chirality c, const TubeShape& shape, const std::ve
 std::vector<LatticeVector> twisted_periods(Chirality c, double min_length, double max_length, double max_shear,
                                            double a = graphene_lattice_constant);
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk

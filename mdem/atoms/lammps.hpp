@@ -10,7 +10,7 @@
 #include "io/disk_full.hpp"
 #include "model/error.hpp"
 
-namespace ropewalk::calibrate {
+namespace ropewalk {
 
 struct LammpsVersion {
   std::string text;  // "29 Sep 2021 - Update 2"
@@ -52,4 +52,4 @@ LammpsVersion lammps_version(const LammpsOptions& options);
 void run_lammps(const std::string& folder, const std::string& name, const std::string& input,
                 const LammpsOptions& options);
 
-}  // namespace ropewalk::calibrate
+}  // namespace ropewalk
