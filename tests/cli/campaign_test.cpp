@@ -615,7 +615,7 @@ TEST_F(Campaign, StaticThresholdOfATubeIsGreenhills) {
   std::istringstream cells(rows[1].substr(rows[1].find(',') + 1));
   double threshold = 0;
   cells >> threshold;
-  EXPECT_NEAR(threshold / (8.9868 * 358.4 / (40 * 1.3564)), 1, 0.02) << o.out;
+  EXPECT_NEAR(threshold / (8.9868 * 358.4 / (41 * 1.3564)), 1, 0.02) << o.out;
   EXPECT_NE(rows[1].find("sideways"), std::string::npos) << rows[1];
 }
 
