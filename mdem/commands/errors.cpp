@@ -190,6 +190,9 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    if (manifest.status == "taken from atoms")
+      throw InputError({dir.path, 0, ""}, "is no run that was run: its elements were taken from atoms",
+                       "run a scene that begins with its final.csv");
     if (manifest.status != "finished")
       throw InputError({dir.path, 0, ""}, fmt::format("is a run that is {}", manifest.status),
                        "end it with `ropewalk resume`, or run the scene anew");

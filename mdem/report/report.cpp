@@ -308,6 +308,7 @@ std::string ending(const ReportInput& in) {
   while (!reason.empty() && reason.back() == '.') reason.pop_back();
   if (in.status == "finished")
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
+  if (in.status == "taken from atoms") return "Its elements were taken from atoms" + reason + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
   if (in.status == "stopped")

@@ -99,12 +99,13 @@ TEST_F(Bridge, FramesOfAtomsBecomeARun) {
     EXPECT_EQ(done.code, 0) << verb << ": " << done.err;
   }
   // What the run has in its last frame, the atoms have as well.
-  const auto last = [&](const char* verb) { return nlohmann::json::parse(run(verb).out); };
+  const auto last = [&](const char* verb) { return nlohmann::json::parse(run(verb).out).back(); };
   const nlohmann::json of_atoms = last("observe coarse --json"), of_run = last("observe made --json");
   EXPECT_NEAR(of_atoms["time_ps"].get<double>(), of_run["time_ps"].get<double>(), 1e-6);
   EXPECT_GT(of_run["beta_deg"].get<double>(), 1);
   for (const char* name : {"beta_deg", "ends_apart_nm", "most_curvature_per_nm"})
     EXPECT_NEAR(of_atoms[name].get<double>(), of_run[name].get<double>(), 0.01) << name;
+  EXPECT_NE(run("errors coarse").err.find("taken from atoms"), std::string::npos) << "there is nothing to repeat";
   EXPECT_EQ(run("resume coarse").code, 2) << "there is nothing to resume";
   const std::string rows = slurp(dir / "coarse/log.csv");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 5);
