@@ -67,7 +67,7 @@ class Import {
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
                        "let LAMMPS run further, or go on with `ropewalk resume`");
     write(from);
-    return {taken_, reached_, last_.time, passed_words(watch_.records())};
+    return {taken_, reached_, last_.time, passed_words(watch_.records()), at_rest_};
   }
 
  private:
@@ -172,6 +172,7 @@ class Import {
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
     const StateFiles end = state_files(simulation, dir_.final_state());
+    if (scene_.run.mode == RunOptions::Mode::relax) judge_rest(simulation, m);
     write_file_atomically(dir_.log(), log_);
     frames_->replace();
     if (!end.memory.empty()) write_file_atomically(dir_.final_memory(), end.memory);
@@ -180,6 +181,19 @@ class Import {
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
     report_or_tell(dir_, listener_, [&] { write_report(dir_, scene_, prepared_for_report()); });
+  }
+
+  // LAMMPS relaxes until forces are small. That the energy of the bonds is near the minimum's is looked for here.
+  void judge_rest(Simulation& simulation, Manifest& m) {
+    const Relaxed end = simulation.relax(scene_.run.goal, 0, [](long) { return true; });
+    at_rest_ = end.at_rest;
+    if (at_rest_) return;
+    m.status = "not relaxed";
+    m.reason += fmt::format(
+        ", which looks at forces alone: the largest is {:.3g} eV/nm, and the energy of the bonds is known within "
+        "{:.2g} of its value, {:.2g} asked for",
+        end.force, end.error, scene_.run.goal.energy);
+    listener_.tell(fmt::format("note: not at rest after {}; go on: ropewalk resume {}", m.reason, dir_.path));
   }
 
   // The report compares with the state at time zero.
@@ -205,7 +219,7 @@ class Import {
   LammpsRow last_;
   EnergyMark mark_;  // before the states that are not judged yet
   std::int64_t marked_at_ = 0;
-  bool told_of_account_ = false;
+  bool told_of_account_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // of the force terms, in the last state
   std::string log_;

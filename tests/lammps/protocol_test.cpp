@@ -312,6 +312,23 @@ TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
   }
 }
 
+// LAMMPS ends where forces are small; the scene asks for the energy as well.
+TEST_F(LammpsRun, ARelaxationThatIsNotAtRestSaysSoAndGoesOn) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 30\n[contact]\nlaw = "
+      "\"none\"\n[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"force\"\nelements = [-1]\nforce_nN = "
+      "[0.01, 0, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\n",
+      "out");
+  ASSERT_EQ(lmp(1, "out").code, 0);
+  const Outcome o = run("import out");
+  EXPECT_EQ(o.code, 4) << o.out << o.err;
+  EXPECT_NE(o.err.find("not at rest after steps 0 to"), std::string::npos) << o.err;
+  EXPECT_EQ(run("resume out --quiet").code, 0);
+  ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
+  const auto bend = [&](const char* of) { return read_log((dir / of / "log.csv").string()).back()["bend_eV"]; };
+  EXPECT_NEAR(bend("out"), bend("whole"), 2e-3 * bend("whole"));
+}
+
 const char* const warm_twist =
     "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\nmay_cool = true\n";
 
