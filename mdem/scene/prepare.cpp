@@ -291,7 +291,7 @@ Prepared prepare(Scene& scene) {
   if (scene.from_file() || typed)
     refuse_overlaps(
         out.topology, out.interaction, out.state,
-        typed ? InputError::Place{scene.path, 0, "rope.places_nm"} : InputError::Place{scene.source->file(), 0, ""},
+        typed ? place_in(scene, "rope.places_nm") : InputError::Place{scene.source->file(), 0, ""},
         scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
