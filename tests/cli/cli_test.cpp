@@ -1275,13 +1275,12 @@ TEST_F(Cli, NumericsTellHowFarARodIsOff) {
   const Json found = Json::parse(o.out), bend = found.at("at_the_end").at("bend_eV");
   const double off =
       bend.at("value").get<double>() - ropewalk::read_log((dir / "finest/log.csv").string()).back()["bend_eV"];
-  EXPECT_GT(std::fabs(off), 0.01 * bend.at("value").get<double>());
+  EXPECT_GT(std::fabs(off), 0.005 * bend.at("value").get<double>());
   EXPECT_NEAR(bend.at("parts").at("elements").get<double>(), std::fabs(off), 0.1 * std::fabs(off)) << bend;
   EXPECT_LT(bend.at("parts").at("tolerance").get<double>(), 0.1 * std::fabs(off));
   EXPECT_EQ(bend.at("decides"), "elements");
-  EXPECT_EQ(found.at("remarks"),
-            Json({"Not repeated, another start: nothing in the scene is random, and a relaxation takes no "
-                  "velocities"}));
+  EXPECT_EQ(found.at("remarks").back(),
+            "Not repeated, another start: nothing in the scene is random, and a relaxation takes no velocities");
   EXPECT_EQ(run("errors r --numerics --mean 1 --quiet").code, 2);
 }
 
