@@ -340,6 +340,11 @@ class MeasureTest(FolderTest):
         position[0, 2] = position[0, 1]
         with self.assertRaisesRegex(ropewalk.InputError, "state: .*finite number; two elements lie in one place"):
             of(position, start.orientation)
+        with self.assertRaisesRegex(ropewalk.InputError, "parameters: names no parameter set"):
+            ropewalk.energy(start, [])
+        for begin in ([], [70], [0, 80, 70], [0, 35, 35, 70], [1, 70], [0, -5, 70]):
+            with self.assertRaisesRegex(ValueError, "tubes"):
+                ropewalk.energy(ropewalk.State(start.flat, begin, start.element_length_nm), "cnt-10-10-tersoff")
 
     def test_numbers_of_steps_have_an_end(self):
         simulation = ropewalk.Simulation(ROPE)
