@@ -187,19 +187,21 @@ frames_every_ps = 0.2
   EXPECT_NE(run("calibrate fluctuations warm --after 59").err.find("16 are needed"), std::string::npos);
 }
 
-// A state between the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
+// States below the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
 TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   const double a = shipped("cnt-5-5-tersoff").element_length;
-  const Elements twisted = rod(10, a, {0.01, 0.06, 0});
-  spit(dir / "state.csv", state_csv(twisted.topology, twisted.state));
-  const Outcome relaxed = run("atoms state.csv --parameters cnt-5-5-tersoff -o a.data --relax --json");
-  ASSERT_EQ(relaxed.code, 0) << relaxed.err;
-  const auto part = nlohmann::json::parse(relaxed.out).at(0);
-  const double model = part["model_bonds_eV"], atoms = part["atoms_relaxed_eV"];
-  EXPECT_GT(model, 0.5);
-  // Atoms of half an element at each end lie beyond the outermost bonds.
-  EXPECT_NEAR(atoms / model, 1.05, 0.1);
-  EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  for (const RodShape& shape : {RodShape{0.01, 0, 0}, RodShape{0, 0.06, 0}, RodShape{0, 0, 0.15}}) {
+    const Elements rod10 = rod(10, a, shape);
+    spit(dir / "state.csv", state_csv(rod10.topology, rod10.state));
+    const Outcome relaxed = run("atoms state.csv --parameters cnt-5-5-tersoff -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    const auto part = nlohmann::json::parse(relaxed.out).at(0);
+    const double model = part["model_bonds_eV"], atoms = part["atoms_relaxed_eV"], placed = part["atoms_placed_eV"];
+    EXPECT_GT(model, 0.5);
+    EXPECT_NEAR(atoms / model, 1, 0.05);
+    EXPECT_GT(placed, atoms);
+    EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  }
 }
 
 }  // namespace UNIT
