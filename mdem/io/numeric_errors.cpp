@@ -18,14 +18,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* numerics_format = "ropewalk-numerics-1";
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr double sure = 2;  // standard errors, beyond which a difference is more than scatter
 
 bool is_time(const std::string& name) { return name == "step" || name == "time_ps"; }
 
 LogRow row_without_values() {
   LogRow row;
-  for (double& v : row.values()) v = unknown;
+  for (double& v : row.values()) v = not_known;
   return row;
 }
 
@@ -57,7 +57,9 @@ std::vector<LogRow> rows_beside(const std::vector<LogRow>& rows, double pace, co
 Json number_or_null(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
 // A value that is missing in one run only says nothing of its error.
-double difference(double a, double b) { return std::isfinite(a) && std::isfinite(b) ? std::fabs(a - b) : unknown; }
+double difference(double a, double b) {
+  return std::isfinite(a) && std::isfinite(b) ? std::fabs(a - b) : not_known;
+}
 
 double or_zero(double v) { return std::isfinite(v) ? v : 0; }
 
