@@ -127,7 +127,9 @@ int atoms_command(const AtomsArguments& a) {
     selection.around_tube = place.tube;
     selection.around_element = place.element;
     selection.around_nm = a.length;
-    fmt::print(stderr, "note: {}; frame {} is {:.4g} ps before that\n", place.words, place.frame, place.before_ps);
+    const std::string when =
+        place.before_ps > 0 ? fmt::format("{:.4g} ps before that", place.before_ps) : std::string("of that moment");
+    fmt::print(stderr, "note: {}; frame {} is {}\n", place.words, place.frame, when);
   }
   SingleState single = a.state;
   if (!is_run(a.path)) single.source = std::make_shared<StateSource>(a.path);
