@@ -381,6 +381,14 @@ class CheckpointTest(FolderTest):
         self.assertEqual(first.energies, second.energies)
         self.assertEqual(first.measure("balance_eV"), second.measure("balance_eV"))
 
+    def test_what_is_no_file_is_not_waited_for(self):
+        os.mkfifo("pipe")
+        simulation = ropewalk.Simulation(ROPE)
+        with self.assertRaisesRegex(ropewalk.InputError, "pipe: is not a regular file"):
+            simulation.restore("pipe")
+        with self.assertRaises(TypeError):  # a number would be an open file
+            simulation.restore(0)
+
     def test_damaged_and_foreign_checkpoints_are_refused(self):
         simulation = ropewalk.Simulation(ROPE)
         simulation.step(3)

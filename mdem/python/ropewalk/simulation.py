@@ -10,7 +10,7 @@ from typing import Any, Optional, Union, overload
 
 from . import _core
 from .errors import Error, InputError
-from .files import write_whole
+from .files import read_regular, write_whole
 from .forces import OwnForce, checked
 from .numbers import finite, whole
 from .observables import index_of, observables
@@ -357,8 +357,7 @@ class Simulation:
             checkpoint: what checkpoint() returned, or the file that save() wrote (no unit)
         """
         if not isinstance(checkpoint, bytes):
-            with open(checkpoint, "rb") as file:
-                checkpoint = file.read()
+            checkpoint = read_regular(checkpoint)
         with self._motion("restore"):
             self._core.restore(checkpoint)
             text = self._core.driven_as
