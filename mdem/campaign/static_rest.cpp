@@ -70,7 +70,10 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
   const LogRow first = row_of(moving);
   if (begin) moving.simulation = simulation_of(moving.scene, moving.prepared, begin);
   Simulation& s = moving.simulation;
-  NewtonStatics newton(s, NewtonOptions{scene.run.solver == RunOptions::Solver::automatic});
+  NewtonOptions how;
+  how.fire = scene.run.solver == RunOptions::Solver::automatic;
+  how.most_overloaded = 60;
+  NewtonStatics newton(s, how);
   const auto progress = [&](long) { return goes_on(); };
   Statics end;
   end.end = Statics::End::at_rest;

@@ -25,6 +25,9 @@ Equilibrium::Stability kind_of(StabilityVerdict::Kind kind) {
   return Equilibrium::Stability::unknown;
 }
 
+// A wall that has collapsed bears no more, however long it is turned.
+constexpr int enough_overloaded = 60;  // steps
+
 }  // namespace
 
 LoadStepsLoop::LoadStepsLoop(RunParts& run)
@@ -74,6 +77,7 @@ Statics LoadStepsLoop::rest_at(double time) {
   NewtonOptions how;
   how.fire = options.solver == RunOptions::Solver::automatic;
   how.near = !begins();
+  how.most_overloaded = enough_overloaded;
   NewtonStatics newton(simulation, how);
   const auto go_on = [this](long) { return goes_on(); };
   Statics out = newton.follow(time, options.goal, go_on);

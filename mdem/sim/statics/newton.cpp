@@ -311,6 +311,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       s_.rest_after(out_.relaxed);
     return out_;
   };
+  int overloaded = 0;  // steps
   for (;;) {
     at_newton_ = pace->newton;
     if (!pace->newton) {
@@ -404,6 +405,9 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         pace->falling *= 0.5;
       }
     }
+    overloaded = overloaded_bond(s_).empty() ? 0 : overloaded + 1;
+    if (options_.most_overloaded > 0 && overloaded >= options_.most_overloaded)
+      return end_by(Statics::End::out_of_steps);
     if (moved_on) continue;
     if (roughly_ || !options_.fire || done() >= max_steps) return end_by(Statics::End::refused);
     pace->newton = false;

@@ -28,9 +28,11 @@
 namespace ropewalk {
 
 struct NewtonOptions {
-  bool fire = false;       // FIRE goes first, and again where Newton's steps are refused
-  bool near = false;       // of rest: Newton's method goes first, with a smaller shift
-  int most = 1000;         // steps of Newton's method; no state of rest that was met needed a fifth of them
+  bool fire = false;  // FIRE goes first, and again where Newton's steps are refused
+  bool near = false;  // of rest: Newton's method goes first, with a smaller shift
+  int most = 1000;    // steps of Newton's method; no state of rest that was met needed a fifth of them
+  int most_overloaded =
+      0;  // steps with a bond beyond its window, one after the other, after which it ends; 0: any number
   double farthest = 0.15;  // nm, of an element in a step; turns at the radius
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
