@@ -11,8 +11,7 @@ struct Expectation {
   std::optional<double> at;  // ps; none: the last row
   double value = 0;          // in the unit of the column
   double tolerance = 0;      // absolute, likewise
-  std::string scene_hash =
-      {};  // what_is_run_hash() of the scene that it holds for; empty: for this scene, as it is
+  std::string scene_hash;    // what_is_run_hash() of the scene that it holds for; empty: for this scene, as it is
   bool of_other_scene = false;  // the scene has another hash: it is not judged
 };
 
