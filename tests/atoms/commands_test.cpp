@@ -164,6 +164,9 @@ elements = 24
 [thermostat]
 temperature_K = 300
 coupling_per_ps = 5
+[damping]
+contact_viscosity_eV_ps_per_nm3 = 0
+bond_damping_per_ps = 0
 [run]
 duration_ps = 60
 frames_every_ps = 0.2
