@@ -483,6 +483,8 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--snakemake", v.threshold.snakemake, "Only write a Snakemake file to this file");
   c->add_flag("--theory", v.threshold.theory,
               "Run nothing: tables and page of theory and of the runs that are there");
+  c->add_flag("--static", v.threshold.by_statics,
+              "Run nothing: between which values the frictionless state of rest ceases to be stable");
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });
@@ -501,6 +503,8 @@ void add_rest(CLI::App& app, Verbs& v) {
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());
+  c->add_flag("--static", v.rest.by_statics,
+              "By Newton's method, without runs: the frictionless states of rest, and whether they are stable");
   c->add_flag("--force", v.rest.force, "Replace runs of another scene");
   c->add_flag("--json", v.rest.json, "JSON");
   c->add_flag("--quiet", v.rest.quiet, "No progress");

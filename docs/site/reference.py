@@ -111,7 +111,7 @@ def scene_tables(program):
     """A page for each table of a scene, of what docs/tables.md, docs/theory.md and the program say of it."""
     pages, names = {}, {page_of(t) for t in program["scene"]}
     for t in program["scene"]:
-        text = made + f"# {'`' + t['table'] + '`' if t['table'] else 'The top of a scene'}\n\n{sentence(t['meaning'])}\n"
+        text = made + f"# {'`' + t['table'] + '`' if t['table'] else 'The top of a scene'}\n"
         for part in t["parts"]:
             if not part["text"]:
                 raise SystemExit(f"reference.py: docs/tables.md, below \"## {page_of(t)}\": there is no "

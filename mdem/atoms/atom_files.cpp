@@ -508,7 +508,7 @@ class XyzReader : public Reader {
       int width = 0;
       if (!parse(parts[k + 2], width) || width < 1 || width > 1000)
         lines_.fail("Properties", "has a column without a number", "write species:S:1:pos:R:3");
-      if (parts[k] == "species" || parts[k] == "element") species = column;
+      if (parts[k] == "species" || (parts[k] == "element" && parts[k + 1] == "S" && species < 0)) species = column;
       if (parts[k] == "pos") position = column;
       column += width;
     }

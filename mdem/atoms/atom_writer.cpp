@@ -18,7 +18,7 @@ void append_head(fmt::memory_buffer& out, AtomFormat format, const AtomsOfElemen
                  double time_ps) {
   const auto to = std::back_inserter(out);
   if (format == AtomFormat::extended_xyz) {
-    fmt::format_to(to, "{}\nProperties=species:S:1:pos:R:3:tube:I:1:element:I:1 pbc=\"F F F\" Time={:.10g}\n",
+    fmt::format_to(to, "{}\nProperties=species:S:1:pos:R:3:tube:I:1:tube_element:I:1 pbc=\"F F F\" Time={:.10g}\n",
                    atoms.count(), time_ps);
     return;
   }

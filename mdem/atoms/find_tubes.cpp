@@ -548,13 +548,9 @@ class Search {
 
 void trim(FoundTube& tube) {
   const Chirality c = tube.chirality;
-  std::vector<long> heights, first_rows;
-  for (const LabelledAtom& atom : tube.atoms) {
-    heights.push_back(height_in_thirds(c, atom.site));
-    if (!atom.site.second) first_rows.push_back(heights.back());
-  }
+  std::vector<long> heights;
+  for (const LabelledAtom& atom : tube.atoms) heights.push_back(height_in_thirds(c, atom.site));
   std::sort(heights.begin(), heights.end());
-  std::sort(first_rows.begin(), first_rows.end());
   const SiteRows rows(c);
   const long reach = 3 * static_cast<long>(std::ceil(window / rolled_shape(c).length_per_hexagon));
   const auto is_whole = [&](long from, long to) {
@@ -562,25 +558,21 @@ void trim(FoundTube& tube) {
                        std::lower_bound(heights.begin(), heights.end(), from);
     return static_cast<double>(there) >= whole_part * static_cast<double>(rows.sites_between(from, to));
   };
-  const auto bottom = std::find_if(first_rows.begin(), first_rows.end(),
-                                   [&](long height) { return is_whole(height, height + reach); });
-  const auto last = std::find_if(heights.rbegin(), heights.rend(),
-                                 [&](long height) { return is_whole(height + 1 - reach, height + 1); });
-  const bool any = bottom != first_rows.end() && last != heights.rend() && *last >= *bottom;
+  const auto lowest =
+      std::find_if(heights.begin(), heights.end(), [&](long height) { return is_whole(height, height + reach); });
+  const auto highest = std::find_if(heights.rbegin(), heights.rend(),
+                                    [&](long height) { return is_whole(height + 1 - reach, height + 1); });
+  const bool any = lowest != heights.end() && highest != heights.rend() && *highest >= *lowest;
+  // The first site is one of the first sublattice, whose rows have multiples of this height: that of the lowest
+  // row, or of the one just below it, where an upside-down tube has no atoms.
+  const long row = 3L * std::gcd(c.n, c.m), bottom = any ? floored(*lowest, row) * row : 0;
+  const LatticeVector origin = vector_of_height(c, bottom / 3);
+  tube.top = any ? *highest + 1 - bottom : 0;
   std::vector<LabelledAtom> kept;
-  Site origin;
-  if (any) {
-    tube.top = *last + 1 - *bottom;
-    origin = std::find_if(tube.atoms.begin(), tube.atoms.end(), [&](const LabelledAtom& atom) {
-               return !atom.site.second && height_in_thirds(c, atom.site) == *bottom;
-             })->site;
-  } else {
-    tube.top = 0;
-  }
   for (const LabelledAtom& atom : tube.atoms) {
-    const Site site = reduced(c, {atom.site.i - origin.i, atom.site.j - origin.j, atom.site.second});
+    const Site site = reduced(c, {atom.site.i - origin.p, atom.site.j - origin.q, atom.site.second});
     const long height = height_in_thirds(c, site);
-    if (any && height >= 0 && height < tube.top) kept.push_back({atom.atom, site});
+    if (any && height >= *lowest - bottom && height < tube.top) kept.push_back({atom.atom, site});
   }
   tube.without_site += static_cast<long>(tube.atoms.size() - kept.size());
   tube.atoms = std::move(kept);

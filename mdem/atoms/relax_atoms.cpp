@@ -131,11 +131,11 @@ std::string relax_input(const std::string& stem, const AtomForces& forces, std::
     k = end;
   }
   text +=
-      "\nfix hold held setforce 0.0 0.0 0.0\n"
+      "\ngroup free subtract all held\nfix hold held setforce 0.0 0.0 0.0\n"
       "min_style cg\nmin_modify dmax 0.05 line quadratic norm max\n"
       "compute energy all pe/atom\n"
       "compute part all chunk/atom type nchunk once\n"
-      "compute of_parts all reduce/chunk part sum c_energy\n"
+      "compute of_parts free reduce/chunk part sum c_energy\n"
       "thermo_style custom step pe fnorm fmax\nthermo 100\n"
       "thermo_modify flush yes lost error norm no format float %.12g\n";
   const auto energies = [&](const char* when) {

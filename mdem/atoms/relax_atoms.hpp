@@ -22,8 +22,8 @@ struct AtomForces {
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential);
 
 // LAMMPS input that reads STEM.data, in which each part of a tube is a type. It writes STEM-relaxed.data, and the
-// energies of all parts before and after to STEM-before.txt and STEM-after.txt. `held`: ranges of atoms that stay
-// where they are.
+// energies of the free atoms of all parts, before and after, to STEM-before.txt and STEM-after.txt. `held`: ranges
+// of atoms that stay where they are.
 std::string relax_input(const std::string& stem, const AtomForces& forces, std::size_t parts,
                         const std::vector<AtomRange>& held);
 

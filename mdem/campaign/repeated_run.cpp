@@ -11,10 +11,10 @@
 #include "plan/scene_edit.hpp"
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
-#include "run/threads.hpp"
 #include "scene/input_numbers.hpp"
 #include "scene/kinds/state.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

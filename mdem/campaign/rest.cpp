@@ -39,15 +39,20 @@ std::string parts_of(const RestValue& v) {
 
 }  // namespace
 
-std::string rest_sweep(const Scene& scene, const Prepared& p, const RestTheory& theory, double viscosity) {
+std::array<double, 2> rest_starts(const Prepared& p, const RestTheory& theory) {
   double rim = 0;
   for (std::size_t i = 0; i < p.state.size(); ++i)
     rim = std::max(rim, std::hypot(p.state.position.x[i], p.state.position.y[i]));
   const double most =
       std::copysign(std::min(above * std::fabs(theory.compact), std::tan(steepest) / rim), theory.compact);
+  return {below * most / above, most};
+}
+
+std::string rest_sweep(const Scene& scene, const Prepared& p, const RestTheory& theory, double viscosity) {
+  const std::array<double, 2> starts = rest_starts(p, theory);
   std::string text =
       fmt::format("format = \"ropewalk-sweep-1\"\nscene = {}\n[vary]\nstart.twist_deg_per_nm = [{:.4g}, {:.4g}]\n",
-                  nlohmann::json(scene.path).dump(), below * most / above / units::degree, most / units::degree);
+                  nlohmann::json(scene.path).dump(), starts[0] / units::degree, starts[1] / units::degree);
   if (viscosity >= 0) text += fmt::format("damping.contact_viscosity_eV_ps_per_nm3 = [{:.4g}]\n", viscosity);
   return text;
 }

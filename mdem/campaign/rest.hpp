@@ -19,6 +19,9 @@ namespace ropewalk {
 // contact viscosity of both: any value leads to a state of rest, and a lower one sooner until the rope swings.
 std::string rest_sweep(const Scene& scene, const Prepared& prepared, const RestTheory& theory, double viscosity);
 
+// Their windings, rad/nm: from below and from above.
+std::array<double, 2> rest_starts(const Prepared& prepared, const RestTheory& theory);
+
 // The end of one run. Means are over its last fifth.
 struct RestSide {
   double start = 0;                      // deg/nm

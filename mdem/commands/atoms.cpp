@@ -76,8 +76,8 @@ void refuse_what_does_not_fit(const AtomsArguments& a, AtomFormat format) {
 }
 
 void print_comparison(const std::vector<PartComparison>& parts) {
-  fmt::print("energies, eV, of atoms against a straight tube at rest that was relaxed alike\n");
-  fmt::print("{:>5} {:>9} {:>8} {:>13} {:>13} {:>13} {:>13} {:>13}\n", "tube", "elements", "atoms", "model: bonds",
+  fmt::print("energies, eV, of the free atoms against a straight tube at rest that was relaxed alike\n");
+  fmt::print("{:>5} {:>9} {:>8} {:>13} {:>13} {:>13} {:>13} {:>13}\n", "tube", "elements", "free", "model: bonds",
              "contact", "sum", "atoms placed", "atoms relaxed");
   PartComparison sum;
   for (const PartComparison& p : parts) {
@@ -100,7 +100,7 @@ nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {
     list.push_back({{"tube", p.part.tube},
                     {"first_element", p.part.begin},
                     {"last_element", p.part.end - 1},
-                    {"atoms", p.atoms},
+                    {"free_atoms", p.atoms},
                     {"model_bonds_eV", p.bonds},
                     {"model_contact_eV", p.contact},
                     {"atoms_placed_eV", p.placed},
@@ -127,7 +127,9 @@ int atoms_command(const AtomsArguments& a) {
     selection.around_tube = place.tube;
     selection.around_element = place.element;
     selection.around_nm = a.length;
-    fmt::print(stderr, "note: {}; frame {} is {:.4g} ps before that\n", place.words, place.frame, place.before_ps);
+    const std::string when =
+        place.before_ps > 0 ? fmt::format("{:.4g} ps before that", place.before_ps) : std::string("of that moment");
+    fmt::print(stderr, "note: {}; frame {} is {}\n", place.words, place.frame, when);
   }
   SingleState single = a.state;
   if (!is_run(a.path)) single.source = std::make_shared<StateSource>(a.path);

@@ -101,6 +101,7 @@ struct RestArguments {
   std::optional<double> viscosity;  // eV ps/nm^3
   double tolerance = 0.02;          // of the geometric twist, within which both sides agree
   int jobs = 0;                     // 0: one for each core
+  bool by_statics = false;          // by Newton's method, without runs
   bool force = false;
   bool json = false;
   bool quiet = false;
@@ -170,6 +171,7 @@ struct ThresholdArguments {
   std::string slurm, snakemake;   // write this file and run nothing
   int jobs = 0;                   // points at a time; 0: one for each core
   bool theory = false;            // run nothing
+  bool by_statics = false;        // by Newton's method, without runs
   bool force = false;
   bool quiet = false;
 };

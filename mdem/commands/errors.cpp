@@ -190,6 +190,9 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    if (manifest.status == "taken from atoms")
+      throw InputError({dir.path, 0, ""}, "is no run that was run: its elements were taken from atoms",
+                       "run a scene that begins with its final.csv");
     if (manifest.status != "finished")
       throw InputError({dir.path, 0, ""}, fmt::format("is a run that is {}", manifest.status),
                        "end it with `ropewalk resume`, or run the scene anew");
@@ -246,7 +249,7 @@ int errors_command(const ErrorsArguments& a) {
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
   const RunInputs as_it_was = inputs_of(run.dir, run.scene);
   for (const NumericRun& r : plan.runs)
-    repeats.add(r.words, r.cost, [&] {
+    repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "campaign/static_rest.hpp"
 #include "campaign/sweep_runs.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
@@ -15,6 +17,7 @@
 #include "run/results.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -43,6 +46,57 @@ void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory,
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
+void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& theory, double length) {
+  fmt::print("{:<16} {:>12} {:>10} {:>6} {:>12} {:>10}  {}\n", "from", "twist, deg", "beta, deg", "Q",
+             "left, eV/nm", "left, eV", "branch");
+  for (const StaticRest& r : rests) {
+    fmt::print("{:<16} {:>12.6g} {:>10.4g} {:>6.3g} {:>12.1e} {:>10.1e}  {}\n", r.from, r.twist, r.beta, r.Q,
+               r.force, r.above, r.branch());
+    fmt::print("  {}\n", r.at_rest ? r.stability.words() : "not at rest: " + r.why);
+  }
+  fmt::print(
+      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      theory.compact * length / units::degree, theory.open * length / units::degree);
+}
+
+// In this process: both states cost some seconds.
+int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& p, const RestTheory& theory,
+                    double length, const std::string& name) {
+  if (a.viscosity)
+    throw InputError({"", 0, "--viscosity"}, "has no part in statics", "leave it out, or leave out --static");
+  use_threads(a.jobs);
+  listen_to_stop_signals();
+  const Scene plain = static_scene(scene);
+  const auto goes_on = [] { return stop_signal == 0; };
+  std::vector<StaticRest> rests;
+  const std::array<double, 2> starts = rest_starts(p, theory);
+  for (std::size_t side = 0; side < 2; ++side) {
+    Scene wound = plain;
+    wound.start.turn = starts[side];
+    rests.push_back(static_rest(wound, side == 0 ? "below" : "above", goes_on));
+    if (stop_signal) return tell_stop();
+    const std::string from = rests.back().from;
+    for (const State& begin : along_growing_motion(wound, rests.back())) {
+      rests.push_back(static_rest(wound, from + ", growing", goes_on, &begin));
+      if (stop_signal) return tell_stop();
+    }
+  }
+  const std::string words = static_rest_words(rests, a.tolerance), json = static_rest_json(rests, words);
+  const std::string out = a.out.empty() ? "runs/" + name + "-static-rest" : a.out;
+  if (!a.force && fs::exists(out + "/static-rest.csv"))
+    throw InputError({out, 0, "--out"}, "holds static-rest.csv", "choose another name, or give --force");
+  fs::create_directories(out);
+  write_file_atomically(out + "/static-rest.csv", static_rest_csv(rests));
+  write_file_atomically(out + "/static-rest.json", json);
+  if (a.json) {
+    fmt::print("{}", json);
+    return 0;
+  }
+  print_static_rests(rests, theory, length);
+  fmt::print("{}\nFriction has no part in it. Numbers: {}/static-rest.csv, static-rest.json\n", words, out);
+  return std::all_of(rests.begin(), rests.end(), [](const StaticRest& r) { return r.at_rest; }) ? 0 : 4;
+}
+
 }  // namespace
 
 int rest_command(const RestArguments& a) {
@@ -53,6 +107,7 @@ int rest_command(const RestArguments& a) {
   const RestTheory theory = rest_theory(scene, p);
   const double length = p.topology.length_of(0) * p.topology.longest_element();
   const std::string name = fs::path(a.scene).stem().string();
+  if (a.by_statics) return rest_by_statics(a, scene, p, theory, length, name);
   const CampaignDirectory dir{a.out.empty() ? "runs/" + name + "-rest" : a.out};
   scene.path = fs::absolute(a.scene).string();
   const Sweep sweep = sweep_of_text(rest_sweep(scene, p, theory, viscosity_of(a, scene)), dir.sweep());

@@ -6,16 +6,19 @@
 #include <filesystem>
 
 #include "campaign/point_runs.hpp"
+#include "campaign/static_threshold.hpp"
 #include "campaign/threshold_search.hpp"
 #include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
 #include "io/clocks.hpp"
+#include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/tell.hpp"
 #include "run/wall_time.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -49,6 +52,36 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
 }
 
+// In this process: a state of rest costs some seconds.
+int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const CampaignDirectory& dir) {
+  for (const auto& [given, option] : {std::pair{!a.known.empty(), "--known"},
+                                      {!a.slurm.empty(), "--slurm"},
+                                      {!a.snakemake.empty(), "--snakemake"},
+                                      {a.theory, "--theory"}})
+    if (given)
+      throw InputError({"", 0, option}, "is for runs, and --static makes none", "leave one of the two out");
+  use_threads(a.jobs);
+  listen_to_stop_signals();
+  const std::string file = dir.path + "-static.csv";  // beside the directory of runs
+  if (!a.force && fs::exists(file))
+    throw InputError({file, 0, "--out"}, "exists", "choose another --out, or give --force");
+  const std::vector<SweepPoint> all = points_of(sweep);
+  std::vector<StaticThreshold> found;
+  for (const SweepPoint& point : chosen_points(all, a.only)) {
+    found.push_back(static_threshold(sweep, point, [] { return stop_signal == 0; }));
+    if (stop_signal) return tell_stop();
+    const StaticThreshold& t = found.back();
+    fmt::print("{:<40} {:<18} theory {}{}\n", t.point,
+               t.found() ? fmt::format("{:.4g} ± {:.2g}", t.value(), t.error()) : std::string("not found"),
+               std::isfinite(t.theory) ? fmt::format("{:.4g}", t.theory) : std::string("-"),
+               t.motion.empty() ? "" : "; above it grows: " + t.motion);
+    if (!t.why.empty()) fmt::print("  note: {}\n", t.why);
+  }
+  write_file_atomically(file, static_thresholds_csv(found));
+  fmt::print("Friction and the time of a run have no part in it. Numbers: {}\n", file);
+  return 0;
+}
+
 }  // namespace
 
 int threshold_command(const ThresholdArguments& a) {
@@ -62,6 +95,7 @@ int threshold_command(const ThresholdArguments& a) {
   if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
     tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
+  if (a.by_statics) return thresholds_by_statics(a, sweep, dir);
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   ThresholdSearch search(std::move(sweep), dir, a.only);
   if (const ClusterScripts scripts{a.slurm, a.snakemake}; scripts.any())

@@ -33,20 +33,20 @@ std::size_t index_of(const Topology& topology, int tube, int element) {
   return static_cast<std::size_t>(topology.tube_begin[static_cast<std::size_t>(tube)] + element);
 }
 
-// Atoms of the ends of each part, and of elements that the run holds.
+// The ends of each part, and elements that the run holds.
+bool is_held(const AtomicState& s, const TubePart& part, int element) {
+  return element == part.begin || element + 1 == part.end || s.held[index_of(s.topology, part.tube, element)];
+}
+
 std::vector<AtomRange> held_atoms(const AtomicState& s, const std::vector<TubePart>& parts,
                                   const std::vector<AtomRange>& ranges) {
   std::vector<AtomRange> held;
-  for (const AtomRange& range : ranges) {
-    const TubePart& part = parts[static_cast<std::size_t>(range.part)];
-    if (range.element == part.begin || range.element + 1 == part.end ||
-        s.held[index_of(s.topology, range.tube, range.element)])
-      held.push_back(range);
-  }
+  for (const AtomRange& range : ranges)
+    if (is_held(s, parts[static_cast<std::size_t>(range.part)], range.element)) held.push_back(range);
   return held;
 }
 
-// Energies of the model, of these parts alone.
+// Energies of the model, of these parts alone and without the elements that are held.
 void add_model_energies(const AtomicState& s, std::vector<PartComparison>& parts) {
   Topology topology;
   topology.types = s.topology.types;
@@ -64,6 +64,7 @@ void add_model_energies(const AtomicState& s, std::vector<PartComparison>& parts
   std::size_t i = 0;
   for (PartComparison& p : parts)
     for (int e = p.part.begin; e < p.part.end; ++e, ++i) {
+      if (is_held(s, p.part, e)) continue;
       p.bonds += energies.bond_energy[i];
       p.contact += energies.vdw_energy[i];
     }
@@ -227,7 +228,9 @@ std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::
   const AtomForces forces = atom_forces(s.sets, potential);
   std::vector<PartComparison> out;
   for (const TubePart& part : parts) out.push_back({part});
-  for (const AtomRange& r : written.ranges) out[static_cast<std::size_t>(r.part)].atoms += r.last - r.first + 1;
+  for (const AtomRange& r : written.ranges)
+    if (const auto part = static_cast<std::size_t>(r.part); !is_held(s, parts[part], r.element))
+      out[part].atoms += r.last - r.first + 1;
   add_model_energies(s, out);
   const fs::path place = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   const TemporaryFolder work(place.string());

@@ -47,10 +47,10 @@ struct AtomSelection {
 std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& selection);
 
 // Energies of a part (eV): of the model, and of its atoms less those of the same atoms of a straight tube at rest
-// that is relaxed alike.
+// that is relaxed alike. Held elements do not count, whose atoms keep the stress of the cut.
 struct PartComparison {
   TubePart part;
-  long atoms = 0;
+  long atoms = 0;                 // free ones
   double bonds = 0, contact = 0;  // of the model; half of each contact with other parts
   double placed = 0, relaxed = 0;
 };

@@ -422,7 +422,7 @@ CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, 
   m.wall_seconds = clock.seconds();
   m.steps = coarse.state().step;
   m.time_step_fs = settings.time_step_fs;
-  m.status = "finished";
+  m.status = "taken from atoms";
   m.reason = fmt::format("{} frames of {}", done.frames, fmt::join(settings.files, ", "));
   m.scene = scene.name;
   write_file_atomically(to.manifest(), manifest_json(m));

@@ -13,7 +13,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double known_well = 0.01;          // relative error of a good stiffness, and of a good contact
-constexpr double unknown = 0.5;              // relative error of a stiffness that is not known
+constexpr double unknown_stiffness = 0.5;    // relative error of a stiffness that is not known
 constexpr double collapsing_diameter = 4.2;  // nm
 
 constexpr double thin_shell = 0.1;  // EI from EA r^2/2, relative: calibrated tubes agree to 0.04
@@ -34,7 +34,7 @@ void grade_stiffness(const ParameterSet& set, Grade& grade) {
       continue;
     }
     const double error = *q->standard_error / q->value;
-    add(grade, error > unknown ? Level::unfit : Level::limited,
+    add(grade, error > unknown_stiffness ? Level::unfit : Level::limited,
         fmt::format("{} is known to {:.2g} %", key, 100 * error));
   }
 }

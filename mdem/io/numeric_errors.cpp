@@ -17,15 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* format_name = "ropewalk-numerics-1";
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* numerics_format = "ropewalk-numerics-1";
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr double sure = 2;  // standard errors, beyond which a difference is more than scatter
 
-bool is_clock(const std::string& name) { return name == "step" || name == "time_ps"; }
+bool is_time(const std::string& name) { return name == "step" || name == "time_ps"; }
 
-LogRow nothing() {
+LogRow row_without_values() {
   LogRow row;
-  for (double& v : row.values()) v = nan;
+  for (double& v : row.values()) v = not_known;
   return row;
 }
 
@@ -33,8 +33,8 @@ LogRow nothing() {
 LogRow row_at(double time, const std::vector<LogRow>& log) {
   const auto after = std::lower_bound(log.begin(), log.end(), time,
                                       [](const LogRow& row, double t) { return row["time_ps"] < t; });
-  if (after == log.end()) return nothing();
-  if (after == log.begin()) return (*after)["time_ps"] == time ? *after : nothing();
+  if (after == log.end()) return row_without_values();
+  if (after == log.begin()) return (*after)["time_ps"] == time ? *after : row_without_values();
   const LogRow &a = *(after - 1), &b = *after;
   const double share = (time - a["time_ps"]) / (b["time_ps"] - a["time_ps"]);
   LogRow row;
@@ -45,8 +45,8 @@ LogRow row_at(double time, const std::vector<LogRow>& log) {
 
 // Rows that belong to those of the log of the run. The last rows of both belong together: whole steps may end a
 // little before the duration, and a rule may have ended one of the runs earlier. A relaxation has no times.
-std::vector<LogRow> aligned(const std::vector<LogRow>& rows, double pace, const std::vector<LogRow>& log) {
-  std::vector<LogRow> out(log.size(), nothing());
+std::vector<LogRow> rows_beside(const std::vector<LogRow>& rows, double pace, const std::vector<LogRow>& log) {
+  std::vector<LogRow> out(log.size(), row_without_values());
   if (rows.empty() || log.empty()) return out;
   const bool relaxes = log.back()["time_ps"] == log.front()["time_ps"] && log.size() > 1;
   for (std::size_t k = 0; !relaxes && k + 1 < log.size(); ++k) out[k] = row_at(pace * log[k]["time_ps"], rows);
@@ -54,14 +54,16 @@ std::vector<LogRow> aligned(const std::vector<LogRow>& rows, double pace, const 
   return out;
 }
 
-Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+Json number_or_null(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
 // A value that is missing in one run only says nothing of its error.
-double difference(double a, double b) { return std::isfinite(a) && std::isfinite(b) ? std::fabs(a - b) : nan; }
+double difference(double a, double b) {
+  return std::isfinite(a) && std::isfinite(b) ? std::fabs(a - b) : not_known;
+}
 
 double or_zero(double v) { return std::isfinite(v) ? v : 0; }
 
-RunErrors::Value column(std::size_t k) {
+RunErrors::Value value_in(std::size_t k) {
   return [k](const LogRow& row) { return row.values()[k]; };
 }
 
@@ -75,9 +77,9 @@ NumericErrors::NumericErrors(const std::string& directory, NumericRuns runs, Run
                              std::vector<LogRow> log)
     : runs_(std::move(runs)), parameters_(std::move(parameters)), log_(std::move(log)) {
   for (const NumericSource& s : runs_.sources)
-    refined_.push_back(aligned(read_log(directory + "/" + s.folder + "/log.csv"), s.pace, log_));
+    refined_.push_back(rows_beside(read_log(directory + "/" + s.folder + "/log.csv"), s.pace, log_));
   for (const std::string& folder : runs_.starts)
-    starts_.push_back(aligned(read_log(directory + "/" + folder + "/log.csv"), 1, log_));
+    starts_.push_back(rows_beside(read_log(directory + "/" + folder + "/log.csv"), 1, log_));
 }
 
 WholeError NumericErrors::of(const RunErrors::Result& result,
@@ -145,7 +147,7 @@ NumericErrors read_numeric_errors(const std::string& run_directory, const std::v
   NumericRuns runs;
   try {
     const Json j = Json::parse(read_file(path));
-    if (j.at("format") != format_name) throw std::runtime_error("another format");
+    if (j.at("format") != numerics_format) throw std::runtime_error("another format");
     runs.mean_ps = j.at("mean_ps");
     for (const Json& s : j.at("sources"))
       runs.sources.push_back(
@@ -157,6 +159,10 @@ NumericErrors read_numeric_errors(const std::string& run_directory, const std::v
     texts.insert(texts.end(), runs.remarks.begin(), runs.remarks.end());
     for (const std::string& text : texts)
       if (has_control_character(text)) throw std::runtime_error("a control character");
+    std::vector<std::string> folders = runs.starts;
+    for (const NumericSource& s : runs.sources) folders.push_back(s.folder);
+    for (const std::string& folder : folders)
+      if (!is_plain_name(folder)) throw std::runtime_error("a directory elsewhere");
   } catch (const std::exception&) {
     throw InputError({path, 0, ""}, "is not what `ropewalk errors --numerics` writes",
                      "make it again, or take it away");
@@ -176,24 +182,24 @@ std::string numeric_errors_json(const NumericErrors& errors, const std::vector<L
                        {"remedy", s.remedy}});
   for (std::size_t k = 0; k < observables().size() && !log.empty(); ++k) {
     const std::string& name = observables()[k].name;
-    if (is_clock(name)) continue;
-    const WholeError e = errors.at_end(column(k));
+    if (is_time(name)) continue;
+    const WholeError e = errors.at_end(value_in(k));
     Json parts = Json::object();
-    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[runs.sources[i].name] = number(e.parts[i]);
-    results[name] = {{"value", number(e.value)},
-                     {"error", number(e.total())},
-                     {"statistics", number(e.statistics)},
-                     {"numerics", number(e.numerics)},
-                     {"parameters", number(e.parameters)},
-                     {"potential", number(e.potential)},
+    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[runs.sources[i].name] = number_or_null(e.parts[i]);
+    results[name] = {{"value", number_or_null(e.value)},
+                     {"error", number_or_null(e.total())},
+                     {"statistics", number_or_null(e.statistics)},
+                     {"numerics", number_or_null(e.numerics)},
+                     {"parameters", number_or_null(e.parameters)},
+                     {"potential", number_or_null(e.potential)},
                      {"upper_bound", e.bound},
                      {"decides", e.decides},
-                     {"correlation_ps", number(e.correlation_ps)},
-                     {"needed_ps", number(e.needed_ps)},
+                     {"correlation_ps", number_or_null(e.correlation_ps)},
+                     {"needed_ps", number_or_null(e.needed_ps)},
                      {"parts", parts}};
   }
-  return Json{{"format", format_name}, {"mean_ps", runs.mean_ps}, {"sources", sources},
-              {"starts", runs.starts}, {"remarks", runs.remarks}, {"at_the_end", results}}
+  return Json{{"format", numerics_format}, {"mean_ps", runs.mean_ps}, {"sources", sources},
+              {"starts", runs.starts},     {"remarks", runs.remarks}, {"at_the_end", results}}
              .dump(1) +
          "\n";
 }
@@ -205,7 +211,7 @@ std::string whole_errors_csv(const NumericErrors& errors, const std::vector<LogR
   for (std::size_t k = 0; k < log.size(); ++k) {
     LogRow row = log[k];
     for (std::size_t i = 0; i < observables().size(); ++i)
-      if (!is_clock(observables()[i].name)) row.values()[i] = which(errors.of(k, column(i)));
+      if (!is_time(observables()[i].name)) row.values()[i] = which(errors.of(k, value_in(i)));
     text += log_line(row);
     if (text.back() != '\n') text += '\n';
   }
@@ -219,9 +225,10 @@ std::vector<LogRow> rows_of_errors(const std::string& run_directory, const std::
   std::vector<LogRow> rows = log;
   for (std::size_t k = 0; k < log.size(); ++k)
     for (std::size_t i = 0; i < observables().size(); ++i) {
-      if (is_clock(observables()[i].name)) continue;
-      const ResultError p = parameters.empty() ? ResultError{} : parameters.of(k, column(i));
-      rows[k].values()[i] = numerics.empty() ? std::hypot(p.error, p.potential) : numerics.of(k, column(i)).total();
+      if (is_time(observables()[i].name)) continue;
+      const ResultError p = parameters.empty() ? ResultError{} : parameters.of(k, value_in(i));
+      rows[k].values()[i] =
+          numerics.empty() ? std::hypot(p.error, p.potential) : numerics.of(k, value_in(i)).total();
     }
   return rows;
 }

@@ -116,6 +116,10 @@ bool has_influence(const ResultError& error, const std::vector<LogRow>& log, con
   return error.linear || (error.error > noise * largest && error.error > movement(log, value));
 }
 
+bool is_plain_name(const std::string& folder) {
+  return !folder.empty() && folder != "." && folder != ".." && folder.find('/') == std::string::npos;
+}
+
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {
   const std::string directory = run_directory + "/errors", path = directory + "/errors.json";
   if (!std::filesystem::exists(path)) return {};
@@ -131,6 +135,8 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
       const ErrorSource& read = sources.back();
       for (const std::string& text : {read.name, read.plus, read.minus, read.key})
         if (has_control_character(text)) throw std::runtime_error("a control character");
+      for (const std::string& folder : {read.plus, read.minus})
+        if (!folder.empty() && !is_plain_name(folder)) throw std::runtime_error("a directory elsewhere");
     }
     correlation = j.at("correlation").get<std::vector<std::vector<double>>>();
     bool square = correlation.size() == sources.size();

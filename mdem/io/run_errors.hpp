@@ -71,6 +71,9 @@ double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
 // log, and more than noise where it is not linear in them.
 bool has_influence(const ResultError& error, const std::vector<LogRow>& log, const RunErrors::Value& value);
 
+// Whether it names a directory in another one, and none elsewhere.
+bool is_plain_name(const std::string& folder);
+
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
 // Writes the file that read_run_errors reads, with the errors of all observables at the end.

@@ -1,7 +1,9 @@
 // Energies, forces and torques of one state.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "model/error.hpp"
@@ -27,8 +29,10 @@ class GivenState : public Source {
     state_.orientation = quaternions_from(orientation);
     state_.velocity.resize(state_.size());
     state_.angular_velocity.resize(state_.size());
-    if (tube_begin.empty() || tube_begin.back() != static_cast<int>(state_.size()) ||
-        state_.orientation.size() != state_.size())
+    if (tube_begin.size() < 2 || tube_begin.front() != 0 ||
+        std::adjacent_find(tube_begin.begin(), tube_begin.end(), std::greater_equal<int>()) != tube_begin.end())
+      throw std::invalid_argument("tubes begin at element 0, and each has one element or more");
+    if (tube_begin.back() != static_cast<int>(state_.size()) || state_.orientation.size() != state_.size())
       throw std::invalid_argument("positions, orientations and tubes do not have the same number of elements");
     for (std::size_t i = 0; i < state_.size(); ++i) {
       const auto wrong = [&](const std::string& what, const char* remedy) {

@@ -49,6 +49,50 @@ Panel torque(const std::vector<LogRow>& log) {
   return out;
 }
 
+// The load against what it does, along states of rest. The lines of one kind reach to the next state of another
+// kind.
+Panel equilibria(const ReportInput& in) {
+  using Stability = Equilibrium::Stability;
+  const auto changes = [&](const char* column) {
+    const double first = in.log.front()[column];
+    return std::any_of(in.log.begin(), in.log.end(),
+                       [&](const LogRow& r) { return std::isfinite(r[column]) && r[column] != first; });
+  };
+  const bool turned = largest(in.log, "rotation_deg") > 1, by_moment = changes("moment_nN_nm");
+  const LogValue load = by_moment ? logged("moment_nN_nm")
+                        : turned  ? torque_of(in.log)
+                                  : logged("tension_upper_nN");
+  const auto is = [&in](std::size_t k, Stability s) {
+    return k < in.equilibria.size() && in.equilibria[k].stability == s;
+  };
+  const auto only = [&](Stability s) -> LogValue {
+    return [=](const LogRow& r) {
+      for (std::size_t k = 0; k < in.equilibria.size(); ++k)
+        if (in.equilibria[k].step == static_cast<std::int64_t>(r["step"]))
+          return is(k, s) || is(k + 1, s) || (k > 0 && is(k - 1, s)) ? load(r)
+                                                                     : std::numeric_limits<double>::quiet_NaN();
+      return std::numeric_limits<double>::quiet_NaN();
+    };
+  };
+  Panel out{
+      "States of rest",
+      fmt::format("{} States of rest along the schedules of the loads, frictionless. Solid: no small motion grows; "
+                  "dashed: one does, or it cannot be told.",
+                  escape_markup(in.reason) + "."),
+      {by_moment || turned ? "torque" : "tension", by_moment || turned ? "nN nm" : "nN", false},
+      {},
+      false,
+      false,
+      turned ? "rotation_deg" : "ends_strain"};
+  const auto any = [&](Stability s) {
+    return std::any_of(in.equilibria.begin(), in.equilibria.end(), [&](const auto& e) { return e.stability == s; });
+  };
+  if (any(Stability::stable)) out.traces.push_back({"stable", only(Stability::stable), 0});
+  if (any(Stability::unstable)) out.traces.push_back({"unstable", only(Stability::unstable), 1, true});
+  if (any(Stability::unknown)) out.traces.push_back({"not told", only(Stability::unknown), 2, true});
+  return out;
+}
+
 Panel tension(const std::vector<LogRow>& log) {
   return {
       "Tension",
@@ -250,11 +294,12 @@ std::string literature() {
 std::string loading_part(const ReportInput& in, Figures& figures) {
   if (in.log.size() < 2 || !in.loaded) return "";
   const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
+  const std::string curve = in.equilibria.size() > 1 ? heading("States of rest") + panel(equilibria(in)) : "";
   const bool twisted =
       in.rope && largest(in.log, "torque_upper_nN_nm") + largest(in.log, "torque_lower_nN_nm") > 0.01;
   const bool pulled = largest(in.log, "tension_upper_nN") + largest(in.log, "tension_lower_nN") > 1e-3;
-  if (!twisted && !pulled) return "";
-  std::string html = heading("Loads at both ends");
+  if (!twisted && !pulled) return curve;
+  std::string html = curve + heading("Loads at both ends");
   const std::string torques = twisted ? panel(torque(in.log)) : "", pull = pulled ? panel(tension(in.log)) : "";
   html += pair_of(torques, pull) + loop_words(in.log);
   if (largest(in.log, "ends_strain") > 1e-6) html += panel(length());

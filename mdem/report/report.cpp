@@ -308,6 +308,7 @@ std::string ending(const ReportInput& in) {
   while (!reason.empty() && reason.back() == '.') reason.pop_back();
   if (in.status == "finished")
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
+  if (in.status == "taken from atoms") return "Its elements were taken from atoms" + reason + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
   if (in.status == "stopped")
@@ -552,7 +553,8 @@ std::string mean_cells(const std::vector<LogRow>& log, const std::string& column
 }
 
 // The columns of the log, also those that no chart shows, but for those that are zero or nan all the time.
-std::string observables_part(const std::vector<LogRow>& log) {
+std::string observables_part(const ReportInput& in) {
+  const std::vector<LogRow>& log = in.log;
   if (log.empty()) return paragraph("The log has no rows, so nothing is known.");
   const bool timed = log.size() > 2 && !clock_of(log).counts_steps();
   std::string html =
@@ -571,6 +573,7 @@ std::string observables_part(const std::vector<LogRow>& log) {
       continue;
     }
     const double start = values.front(), end = values.back();
+    const double error = o.group == ObservableGroup::time ? 0 : error_of(in, log.size() - 1, logged(o.name));
     values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
                  values.end());
     const auto number = [&](double v) {
@@ -579,7 +582,8 @@ std::string observables_part(const std::vector<LogRow>& log) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     html += "<tr><th>" + escape_markup(o.name) + "</th><td>" + escape_markup(o.unit) + "</td>" + number(start) +
-            number(end) + number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
+            (error > 0 ? "<td class=\"number\">" + measured_text(end, error) + "</td>" : number(end)) +
+            number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
             (timed ? mean_cells(log, o.name, needed) : "") + "<td class=\"soft\">" + escape_markup(o.meaning) +
             "</td></tr>\n";
   }
@@ -664,7 +668,7 @@ std::string report_html(const ReportInput& in) {
   if (!in.error_bars.empty() || !in.errors.empty() || !in.whole.empty()) html += heading("Error bars");
   html += carried_errors(in);
   for (const std::string& words : in.error_bars) html += paragraph(escape_markup(words));
-  html += heading("All observables") + observables_part(in.log);
+  html += heading("All observables") + observables_part(in);
   html += heading("The run") + facts_part(in.facts);
   html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);
   return html + "</main>\n</body>\n</html>\n";

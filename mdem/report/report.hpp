@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/equilibria.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/numeric_errors.hpp"
@@ -52,7 +53,8 @@ struct ReportInput {
   bool loaded = false;                 // by [twist], grips or loads
   std::vector<ReportLoading> loading;  // in the order of time
   Validity validity;
-  LimitsFile watched;  // empty if the run has no limits.json
+  Equilibria equilibria;  // of a run with load steps
+  LimitsFile watched;     // empty if the run has no limits.json
   RunResults results;
 
   RopeShells shells;                    // of the untwisted rope

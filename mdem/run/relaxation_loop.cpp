@@ -41,31 +41,6 @@ StopReason RelaxationLoop::go() {
   return why;
 }
 
-namespace {
-
-// By the rates of its modes where that is cheap. Pivots or quotients of the tangent do not tell under couples.
-std::string stability_words(const Simulation& simulation, const Statics& end) {
-  constexpr double affordable = 1.5e8;  // bytes: of 19 tubes of 70 nm
-  constexpr double per_ns = 1000;       // 1/ps in 1/ns
-  if (end.falls) return "it rests on a saddle, and stays there";
-  std::string why;
-  if (const auto found = stability_of(simulation, affordable, why)) {
-    if (found->stable())
-      return fmt::format("stable: no motion grows faster than {:.2g}/ns", found->neutral * per_ns);
-    // Slower ones were seen to come and go with what is left of forces and moments at rest.
-    if (found->growth <= NewtonOptions().slow)
-      return fmt::format("no motion grows faster than {:.2g}/ns; one of {:.2g}/ns cannot be told from the residual",
-                         NewtonOptions().slow * per_ns, found->growth * per_ns);
-    return fmt::format("unstable: a motion grows by {:.3g}/ns, which `ropewalk modes` names",
-                       found->growth * per_ns);
-  }
-  if (end.symmetric)
-    return fmt::format("stable: no motion grows faster than {:.2g}/ns", NewtonOptions().slow * per_ns);
-  return "whether it is stable under these couples is not known (" + why + "): `ropewalk modes` tells";
-}
-
-}  // namespace
-
 Relaxed RelaxationLoop::relax(long most, const std::function<bool(long)>& progress) {
   const RelaxGoal& goal = run_.moving.scene.run.goal;
   if (!newton_) return run_.moving.simulation.relax(goal, most, progress);
@@ -139,7 +114,7 @@ std::string RelaxationLoop::words_of(const Statics& end, long max_steps) const {
   }
   if (r.saddles > 0)
     words += fmt::format("; it left {} saddle{} of the energy on the way", r.saddles, r.saddles > 1 ? "s" : "");
-  words += "; " + stability_words(run_.moving.simulation, end);
+  words += "; " + judge_stability(run_.moving.simulation, end).words();
   if (end.spinning > 10 * end.largest_torque)
     words +=
         fmt::format("; couples about their own axes spin single tubes by up to {:.2g} eV, and nothing holds them",

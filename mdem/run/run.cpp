@@ -8,6 +8,7 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "run/dynamics_loop.hpp"
+#include "run/load_steps_loop.hpp"
 #include "run/pending_files.hpp"
 #include "run/plan_check.hpp"
 #include "run/refined_run.hpp"
@@ -29,6 +30,11 @@ std::string words_with_place(const NumericalError& e, const Topology& topology, 
   return text.replace(at, number.size(), place_in_words(topology, held, e.element()) + ":");
 }
 
+StopReason go_loop(RunParts& parts) {
+  if (parts.moving.scene.statics.steps > 0) return LoadStepsLoop(parts).go();
+  return parts.moving.relaxes() ? RelaxationLoop(parts).go() : DynamicsLoop(parts).go();
+}
+
 }  // namespace
 
 void Run::write_manifest(const char* status, const std::string& reason) {
@@ -46,7 +52,7 @@ void Run::write_end(const char* status, const std::string& reason) {
 RunResult Run::go() {
   parts_.clock.since = steady_seconds();
   try {
-    switch (parts_.moving.relaxes() ? RelaxationLoop(parts_).go() : DynamicsLoop(parts_).go()) {
+    switch (go_loop(parts_)) {
       case StopReason::limit:
         return stopped_at_limit();
       case StopReason::refine:

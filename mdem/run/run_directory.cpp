@@ -84,6 +84,7 @@ const std::vector<OutputFile>& run_files() {
       {"log.csv", "run", "observables against time"},
       {"frames.gsd", "run", "elements against time, for OVITO and MDAnalysis"},
       {"frames.lammpstrj", "run, convert", "the same as text, for LAMMPS, ASE and OVITO"},
+      {"equilibria.csv", "run", "states of rest along the schedules of the loads, of a scene with [statics]"},
       {"events.csv", "run", "links that formed and broke, and tubes that broke, with time and place"},
       {"limits.json", "run", "limits that were watched and passed, and refinements"},
       {"manifest.json", "run", "program, inputs and how the run ended"},

@@ -34,6 +34,7 @@ struct RunDirectory {
   std::string report() const { return file("report.html"); }
   std::string view() const { return file("view.html"); }
   std::string plan_check() const { return file("plan-check.csv"); }
+  std::string equilibria() const { return file("equilibria.csv"); }
   std::string events() const { return file("events.csv"); }
   std::string limits() const { return file("limits.json"); }
   std::string final_state() const { return file("final.csv"); }

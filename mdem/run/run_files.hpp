@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "io/equilibria.hpp"
 #include "io/frames/frames.hpp"
 #include "io/growing_file.hpp"
 #include "run/moving_scene.hpp"
@@ -41,6 +42,7 @@ class RunFiles {
   // These end no run where they cannot be written.
   void write_limits(const LimitsFile& limits) { pending_.write(dir_.limits(), limits_json(limits)); }
   void write_manifest(const Manifest& manifest) { pending_.write(dir_.manifest(), manifest_json(manifest)); }
+  void write_equilibria(const Equilibria& all) { pending_.write(dir_.equilibria(), equilibria_csv(all)); }
   // Where a force term has a history.
   void write_events(const MovingScene& moving);
   void write_final_state(const MovingScene& moving) { write_state(dir_.final_state(), moving); }

@@ -16,6 +16,9 @@ namespace ropewalk {
 void Run::check_before_start() const {
   refuse_cooling(parts_.moving.scene, parts_.moving.prepared);
   const MovingScene& m = parts_.moving;
+  if (m.scene.statics.steps > 0 && parts_.settings.on_limit == OnLimit::refine)
+    throw InputError({"", 0, "--on-limit"}, "refine does not go with load steps, which stay with their elements",
+                     "give --on-limit warn or stop, or take shorter elements");
   if (!m.scene.stops.empty())
     refuse_stops_without_value(m.scene, log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account()));
   parts_.limits.check_before_start();

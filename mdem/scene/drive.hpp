@@ -42,6 +42,8 @@ class Drive {
   virtual void refuse(const TomlTable& /*top*/, const Scene&) const {}
   // Why it has no meaning in a relaxation; empty: it has.
   virtual std::string needs_time() const { return ""; }
+  // Whether a relaxation by load steps can follow its course (sim/statics/load_steps.hpp).
+  virtual bool goes_by_load_steps() const { return false; }
   // The same drive with its forces and couples as they are in the end, for a relaxation, in which no time passes.
   // Null: they have no course.
   virtual std::shared_ptr<const Drive> at_its_end() const { return nullptr; }

@@ -104,8 +104,7 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   std::string lacking = scene.source->not_for_lammps();
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
-  if (lacking.empty() && scene.thermostat() && scene.contact.law == "none")
-    lacking = "thermostat (without contact)";
+  if (lacking.empty() && scene.bath() && scene.contact.law == "none") lacking = "thermostat (without contact)";
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
   if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
   if (!lacking.empty())

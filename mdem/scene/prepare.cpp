@@ -17,6 +17,7 @@
 #include "scene/state_files.hpp"
 #include "scene/term_damping.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/statics/load_steps.hpp"
 #include "sim/statics/newton.hpp"
 
 namespace ropewalk {
@@ -290,7 +291,7 @@ Prepared prepare(Scene& scene) {
   if (scene.from_file() || typed)
     refuse_overlaps(
         out.topology, out.interaction, out.state,
-        typed ? InputError::Place{scene.path, 0, "rope.places_nm"} : InputError::Place{scene.source->file(), 0, ""},
+        typed ? place_in(scene, "rope.places_nm") : InputError::Place{scene.source->file(), 0, ""},
         scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
@@ -309,6 +310,10 @@ namespace {
 
 // Newton's method has no answer for these.
 void refuse_statics(const Scene& scene, const Simulation& simulation) {
+  if (scene.statics.steps > 0 && load_step_times(simulation.loads(), scene.statics.steps).empty())
+    throw InputError(
+        {scene.path, 0, "statics.steps"}, "has no schedule to go along: no load and no grip changes",
+        "ramp a load, as by twist.rate_nN_nm_per_ps, or take [statics] away for the one state of rest");
   if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
   const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
   if (!refused.why.empty()) throw InputError(place_in(scene, "run.solver"), refused.why, refused.remedy);

@@ -56,7 +56,7 @@ struct RunOptions {
   Mode mode = Mode::dynamics;
   enum class Solver { fire, newton, automatic };
   Solver solver = Solver::fire;  // relax mode
-  double time_step = 0;  // ps; 0: chosen from the stiffest mode
+  double time_step = 0;          // ps; 0: chosen from the stiffest mode
   Stepping stepping;
   double mass_scale = 1;         // of masses and inertias
   double duration = 0;           // ps; 0: until all drives have ended
@@ -66,6 +66,11 @@ struct RunOptions {
   RelaxGoal goal;                // relax mode
   long max_steps = 200000;       // relax mode
   FrameFormat frames_format = FrameFormat::gsd;
+};
+
+// [statics] states of rest along the schedules of the loads.
+struct StaticsOptions {
+  int steps = 0;  // 0: there is one state of rest, under the loads as they are in the end
 };
 
 struct ObserveOptions {
@@ -96,6 +101,7 @@ struct Scene {
   Damping damping;
   std::vector<std::shared_ptr<const Drive>> drives;  // kind by kind, as in the register
   RunOptions run;
+  StaticsOptions statics;
   ObserveOptions observe;
   LimitOptions limits;
   std::vector<StopRule> stops;

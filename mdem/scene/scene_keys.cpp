@@ -30,8 +30,8 @@ std::vector<SceneTable> scene_tables() {
     tables.push_back(kind.table());
     tables.back().has_properties = kind.has_properties();
   }
-  for (const SceneTable& table :
-       {run_table().doc(), observe_table().doc(), limits_table().doc(), stop_table().doc(), expect_table().doc()})
+  for (const SceneTable& table : {run_table().doc(), statics_table().doc(), observe_table().doc(),
+                                  limits_table().doc(), stop_table().doc(), expect_table().doc()})
     tables.push_back(table);
   return tables;
 }

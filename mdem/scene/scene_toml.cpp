@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/files.hpp"
@@ -27,12 +28,34 @@ void check_contact_law(const TomlTable& top, const Scene& scene) {
   if (kind->check) kind->check(top, scene);
 }
 
+bool uses_newton(const Scene& scene) {
+  return scene.run.mode == RunOptions::Mode::relax && scene.run.solver != RunOptions::Solver::fire;
+}
+
+// What moves in a relaxation goes by load steps, by a single one where the scene names no number.
+void choose_load_steps(const TomlTable& top, Scene& scene) {
+  if (scene.statics.steps > 0 && !uses_newton(scene))
+    throw top.error("statics",
+                    scene.run.mode == RunOptions::Mode::relax
+                        ? "does not go with run.solver = \"fire\", which finds no state of rest under a held moment"
+                        : "belongs to run.mode = \"relax\"",
+                    "take mode = \"relax\" and solver = \"newton\" or \"auto\" in [run], or take [statics] away");
+  const bool moved = uses_newton(scene) && std::any_of(scene.drives.begin(), scene.drives.end(), [](const auto& d) {
+                       const auto end = d->at_its_end();
+                       return d->goes_by_load_steps() && !(end ? end : d)->needs_time().empty();
+                     });
+  if (moved && scene.statics.steps == 0) scene.statics.steps = 1;
+}
+
 void check_run(const TomlTable& top, const Scene& scene) {
   if (scene.run.mode == RunOptions::Mode::relax) {
-    for (const auto& drive : scene.drives)
-      if (!drive->needs_time().empty())
-        throw top.error(drive->table().name, drive->needs_time() + ", and run.mode is \"relax\"",
-                        "take mode = \"dynamics\"");
+    for (const auto& drive : scene.drives) {
+      const bool by_steps = drive->goes_by_load_steps();
+      if (drive->needs_time().empty() || (by_steps && scene.statics.steps > 0)) continue;
+      throw top.error(
+          drive->table().name, drive->needs_time() + ", and run.mode is \"relax\"",
+          by_steps ? "take solver = \"newton\" or \"auto\", or mode = \"dynamics\"" : "take mode = \"dynamics\"");
+    }
     return;
   }
   if (scene.run.duration > 0 || protocol_time(scene) > 0) return;
@@ -89,6 +112,7 @@ void read_tables(const TomlTable& top, Scene& scene) {
       scene.drives.push_back(kind.read(tables.front(), scene));
   }
   scene.run = run_table().read(top.table("run"), scene);
+  if (top.has("statics")) scene.statics = statics_table().read(top.table("statics"), scene);
   scene.observe = observe_table().read(top.table("observe"), scene);
   scene.limits = limits_table().read(top.table("limits"), scene);
   for (const TomlTable& t : top.tables("stop")) scene.stops.push_back(stop_table().read(t, scene));
@@ -114,7 +138,8 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   Scene scene = table.read(top, file);
   read_tables(top, scene);
   top.finish(belongs_to);
-  if (scene.run.mode == RunOptions::Mode::relax)
+  choose_load_steps(top, scene);
+  if (scene.run.mode == RunOptions::Mode::relax && scene.statics.steps == 0)
     for (auto& drive : scene.drives)
       if (auto held = drive->at_its_end()) drive = std::move(held);
   for (const auto& drive : scene.drives) drive->refuse(top, scene);

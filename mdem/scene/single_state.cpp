@@ -61,6 +61,7 @@ void check_length_of_law(const Scene& scene) {
 
 void check_types(const SingleState& s) {
   const int sets = static_cast<int>(s.parameters.size());
+  if (sets == 0) throw InputError({"", 0, "parameters"}, "names no parameter set", "name one");
   if (sets > 1 && s.tube_types.empty())
     throw InputError({"", 0, "--tube-types"}, fmt::format("is missing, and there are {} sets", sets),
                      "say for each tube which of them it is, as in 0,1,1");

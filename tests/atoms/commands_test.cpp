@@ -99,12 +99,13 @@ TEST_F(Bridge, FramesOfAtomsBecomeARun) {
     EXPECT_EQ(done.code, 0) << verb << ": " << done.err;
   }
   // What the run has in its last frame, the atoms have as well.
-  const auto last = [&](const char* verb) { return nlohmann::json::parse(run(verb).out); };
+  const auto last = [&](const char* verb) { return nlohmann::json::parse(run(verb).out).back(); };
   const nlohmann::json of_atoms = last("observe coarse --json"), of_run = last("observe made --json");
   EXPECT_NEAR(of_atoms["time_ps"].get<double>(), of_run["time_ps"].get<double>(), 1e-6);
   EXPECT_GT(of_run["beta_deg"].get<double>(), 1);
   for (const char* name : {"beta_deg", "ends_apart_nm", "most_curvature_per_nm"})
     EXPECT_NEAR(of_atoms[name].get<double>(), of_run[name].get<double>(), 0.01) << name;
+  EXPECT_NE(run("errors coarse").err.find("taken from atoms"), std::string::npos) << "there is nothing to repeat";
   EXPECT_EQ(run("resume coarse").code, 2) << "there is nothing to resume";
   const std::string rows = slurp(dir / "coarse/log.csv");
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 5);
@@ -186,19 +187,21 @@ frames_every_ps = 0.2
   EXPECT_NE(run("calibrate fluctuations warm --after 59").err.find("16 are needed"), std::string::npos);
 }
 
-// A state between the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
+// States below the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
 TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   const double a = shipped("cnt-5-5-tersoff").element_length;
-  const Elements twisted = rod(10, a, {0.01, 0.06, 0});
-  spit(dir / "state.csv", state_csv(twisted.topology, twisted.state));
-  const Outcome relaxed = run("atoms state.csv --parameters cnt-5-5-tersoff -o a.data --relax --json");
-  ASSERT_EQ(relaxed.code, 0) << relaxed.err;
-  const auto part = nlohmann::json::parse(relaxed.out).at(0);
-  const double model = part["model_bonds_eV"], atoms = part["atoms_relaxed_eV"];
-  EXPECT_GT(model, 0.5);
-  // Atoms of half an element at each end lie beyond the outermost bonds.
-  EXPECT_NEAR(atoms / model, 1.05, 0.1);
-  EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  for (const RodShape& shape : {RodShape{0.01, 0, 0}, RodShape{0, 0.06, 0}, RodShape{0, 0, 0.15}}) {
+    const Elements rod10 = rod(10, a, shape);
+    spit(dir / "state.csv", state_csv(rod10.topology, rod10.state));
+    const Outcome relaxed = run("atoms state.csv --parameters cnt-5-5-tersoff -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    const auto part = nlohmann::json::parse(relaxed.out).at(0);
+    const double model = part["model_bonds_eV"], atoms = part["atoms_relaxed_eV"], placed = part["atoms_placed_eV"];
+    EXPECT_GT(model, 0.5);
+    EXPECT_NEAR(atoms / model, 1, 0.05);
+    EXPECT_GT(placed, atoms);
+    EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  }
 }
 
 }  // namespace UNIT

@@ -90,6 +90,22 @@ TEST(RoundTripOfElements, GivesElementsThatAreAllDifferent) {
   EXPECT_LT(d.turn, 1e-5);
 }
 
+// Upside down a tube has its other sublattice below: it keeps all of its elements.
+TEST(RoundTripOfElements, KeepsTheElementsOfATubeThatIsUpsideDown) {
+  for (const char* name : {"cnt-17-0-tersoff", "cnt-12-6-tersoff", "cnt-9-0-tersoff"}) {
+    const ParameterSet set = shipped(name);
+    Elements rod8 = rod(8, set.element_length, {});
+    std::vector<Vector3> atoms = atoms_of(rod8, reference_of(set));
+    for (Vector3& x : atoms) x = Vector3(x.x(), -x.y(), -x.z());
+    const FoundTubes found = found_in(atoms);
+    ASSERT_EQ(found.tubes.size(), 1u);
+    EXPECT_EQ(found.tubes[0].without_site, 0) << name;
+    const ElementFit fit(reference_of(set), set.element_length, 8, found.tubes[0].atoms);
+    EXPECT_GT(fit.filled(0), 0.85) << name;
+    EXPECT_GT(fit.filled(7), 0.75) << name;
+  }
+}
+
 // Displacements of 0.01 nm of every atom move an element of N by 0.01/sqrt(N), twice as much with its neighbours.
 TEST(RoundTripOfElements, AveragesTheNoiseOfAtoms) {
   const ParameterSet set = shipped("cnt-10-10-tersoff");

@@ -624,6 +624,50 @@ TEST_F(Campaign, RestComesFromBothSides) {
   EXPECT_NE(no_rope.err.find("7 tubes or more"), std::string::npos) << no_rope.err;
 }
 
+// Both starts end in one state, which is stable and at rest to many digits. No run is made.
+TEST_F(Campaign, StaticRestIsTheSameFromBothSides) {
+  spit(dir / "rope.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 20.34\n"
+       "[twist]\nmoment_nN_nm = 15\nrate_nN_nm_per_ps = 1\nhold_ps = 10\n");
+  const Outcome o = run("rest rope.toml --static --out still --json");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  const Json found = Json::parse(o.out);
+  EXPECT_EQ(found, Json::parse(slurp(dir / "still/static-rest.json")));
+  ASSERT_EQ(found.at("states").size(), 2u) << o.out;
+  const Json &below = found.at("states")[0], &above = found.at("states")[1];
+  EXPECT_GT(below.at("geometric_twist_deg").get<double>(), 10);
+  EXPECT_NEAR(below.at("geometric_twist_deg").get<double>() / above.at("geometric_twist_deg").get<double>(), 1,
+              1e-3);
+  for (const Json& state : found.at("states")) {
+    EXPECT_EQ(state.at("stability"), "stable") << o.out;
+    EXPECT_LT(state.at("force_eV_per_nm").get<double>(), 1e-4);
+  }
+  EXPECT_FALSE(fs::exists(dir / "still/points"));
+  EXPECT_EQ(run("rest rope.toml --static --out still").code, 2) << "it is there";
+  spit(dir / "warm.toml", slurp(dir / "rope.toml") +
+                              "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 0.1\n"
+                              "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\n"
+                              "bond_damping_per_ps = 0\n");
+  EXPECT_NE(run("rest warm.toml --static").err.find("thermostat: keeps the rope warm"), std::string::npos);
+}
+
+// A tube with free ends under couples of fixed direction: 8.987 EI/L (A. G. Greenhill, 1883).
+TEST_F(Campaign, StaticThresholdOfATubeIsGreenhills) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 41\n"
+       "[twist]\nmoment_nN_nm = 40\nrate_nN_nm_per_ps = 3\nhold_ps = 100\n");
+  sweep_file("[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 40\nto = 75\nshape = \"helix\"\naccuracy = 0.01\n");
+  const Outcome o = run("threshold s.toml --static");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  const std::vector<std::string> rows = lines(slurp(dir / "s-static.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  std::istringstream cells(rows[1].substr(rows[1].find(',') + 1));
+  double threshold = 0;
+  cells >> threshold;
+  EXPECT_NEAR(threshold / (8.9868 * 358.4 / (41 * 1.3564)), 1, 0.02) << o.out;
+  EXPECT_NE(rows[1].find("sideways"), std::string::npos) << rows[1];
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "cli/support.hpp"
+#include "io/equilibria.hpp"
 #include "io/log.hpp"
 #include "outputs_page.hpp"
 #include "signals.hpp"
@@ -1107,6 +1108,34 @@ TEST_F(Cli, NewtonsMethodFindsTheStateOfRestUnderTwist) {
   EXPECT_EQ(modes.code, 0) << modes.err;
 }
 
+// Stopped after every step and resumed, a curve of states of rest is the same bytes.
+TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+       "[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\n[statics]\nsteps = 3\n"
+       "[run]\nmode = \"relax\"\nsolver = \"newton\"\n");
+  const Outcome o = run("run s.toml --out whole");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_THAT(o.out, HasSubstr("4 of 4 states of rest"));
+  const ropewalk::Equilibria rests = ropewalk::read_equilibria((dir / "whole/equilibria.csv").string());
+  ASSERT_EQ(rests.size(), 4u);
+  const std::vector<ropewalk::LogRow> log = ropewalk::read_log((dir / "whole/log.csv").string());
+  ASSERT_EQ(log.size(), 5u) << "the start, and the states of rest";
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(static_cast<double>(rests[k].step), log[k + 1]["step"]);
+    EXPECT_NEAR(log[k + 1]["moment_nN_nm"], 4.0 * static_cast<double>(k), 1e-9);
+    EXPECT_LT(rests[k].force, 1e-4);
+  }
+  EXPECT_GT(log[4]["geometric_twist_deg"], log[3]["geometric_twist_deg"]);
+  EXPECT_THAT(slurp(dir / "whole/report.html"), HasSubstr("States of rest"));
+  const auto steps = [&](std::size_t k) { return std::to_string(rests[k].step + 1); };
+  EXPECT_EQ(run("run s.toml --out parts --steps " + steps(0)).code, 4);
+  EXPECT_EQ(run("resume parts --steps " + steps(2)).code, 4);
+  EXPECT_EQ(run("resume parts").code, 0);
+  for (const char* file : {"log.csv", "equilibria.csv", "frames.gsd", "final.csv"})
+    EXPECT_TRUE(slurp(dir / "parts" / file) == slurp(dir / "whole" / file)) << file;
+}
+
 // Every wrong file of tests/cli/bad: exit code 2 and the one line that it expects.
 TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
   int count = 0;
@@ -1246,13 +1275,12 @@ TEST_F(Cli, NumericsTellHowFarARodIsOff) {
   const Json found = Json::parse(o.out), bend = found.at("at_the_end").at("bend_eV");
   const double off =
       bend.at("value").get<double>() - ropewalk::read_log((dir / "finest/log.csv").string()).back()["bend_eV"];
-  EXPECT_GT(std::fabs(off), 0.01 * bend.at("value").get<double>());
+  EXPECT_GT(std::fabs(off), 0.005 * bend.at("value").get<double>());
   EXPECT_NEAR(bend.at("parts").at("elements").get<double>(), std::fabs(off), 0.1 * std::fabs(off)) << bend;
   EXPECT_LT(bend.at("parts").at("tolerance").get<double>(), 0.1 * std::fabs(off));
   EXPECT_EQ(bend.at("decides"), "elements");
-  EXPECT_EQ(found.at("remarks"),
-            Json({"Not repeated, another start: nothing in the scene is random, and a relaxation takes no "
-                  "velocities"}));
+  EXPECT_EQ(found.at("remarks").back(),
+            "Not repeated, another start: nothing in the scene is random, and a relaxation takes no velocities");
   EXPECT_EQ(run("errors r --numerics --mean 1 --quiet").code, 2);
 }
 

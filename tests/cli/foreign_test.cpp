@@ -190,7 +190,7 @@ TEST_F(Foreign, DeepAndLongTextsAreRefused) {
   spit(dir / "ok.toml", "format = \"ropewalk-scene-1\"\nname = \"" + parts(50) + "\" # " + parts(50) +
                             "\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 6\n[run]\nx = [" +
                             numbers + "]\nduration_ps = 0.5\n");
-  EXPECT_THAT(run("check ok.toml").err, HasSubstr("ok.toml:7: run.x: unknown key"));
+  EXPECT_THAT(run("check ok.toml").err, HasSubstr("ok.toml:8: run.x: unknown key"));
 }
 
 TEST_F(Foreign, ThreadsOfTheEnvironmentHaveABound) {

@@ -29,7 +29,7 @@ TEST_F(Kept, RunsOfEarlierVersionsAreReadOrRefusedByName) {
          "format = \"ropewalk-scene-1\"\nparameters = \"r/parameters.toml\"\n[state]\nfile = \"r/final.csv\"\n"
          "[[friction]]\nstrength_pN_per_nm = 20\n[run]\nduration_ps = 0.02\n");
     for (const char* arguments :
-         {"observe r", "report r", "view r -o v.html --force", "picture r -o p.svg", "compare r r", "gather r",
+         {"observe r", "report r", "view r -o v.html --force", "picture r -o p.svg", "compare r r",
           "convert r f.lammpstrj --force", "cite r", "calibrate show r/parameters.toml",
           "energy r/final.csv --parameters r/parameters.toml", "check again.toml",
           "run again.toml --out again --force --quiet"}) {

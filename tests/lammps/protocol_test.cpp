@@ -109,7 +109,9 @@ TEST_F(ProtocolTest, HundredStepsAgree) {
       EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
       EXPECT_NEAR(row.heat, native.heat(), p.tolerance * std::fmax(1, native.heat()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
-      if (p.name == std::string("Thermostat")) EXPECT_GT(native.heat(), 1);
+      if (p.name == std::string("Thermostat")) {
+        EXPECT_GT(native.heat(), 1);
+      }
     }
   }
 }

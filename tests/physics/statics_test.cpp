@@ -245,6 +245,73 @@ TEST(Statics, TwistedRopeComesToRest) {
   EXPECT_GT(s.forces().energy.twist, 1);
 }
 
+GripLoad moved_by(std::size_t axis, std::vector<Schedule::Point> points, int depth) {
+  GripLoad grip;
+  grip.depth = depth;
+  grip.axes[axis].is = GripAxis::Is::moved;
+  grip.axes[axis].points = std::move(points);
+  return grip;
+}
+
+// Far from rest at once, and in steps that a bond bears. The work of the clamp is what the bonds hold.
+TEST(Statics, TubeFollowsAClampThatTurnsAndDraws) {
+  constexpr double angle = 1.5, draw = 0.3;
+  Beam b(21);
+  GripLoad lower;
+  lower.end = lower_end;
+  b.loads.add(lower.on_elements({0}, b.topology));
+  GripLoad upper = moved_by(GripLoad::about_z, {{0, 0}, {10, angle}}, 1);
+  upper.axes[GripLoad::z].is = GripAxis::Is::moved;
+  upper.axes[GripLoad::z].points = {{5, 0}, {10, draw}};
+  b.loads.add(upper.on_elements({b.last}, b.topology));
+  Simulation s = b.make();
+  const RelaxGoal goal{1e-7, 1e-6};
+  NewtonStatics newton(s);
+  ASSERT_EQ(newton.follow(10, goal, go_on).end, Statics::End::at_rest);
+  ASSERT_TRUE(newton.relax(goal, 100, go_on).relaxed.at_rest);
+  EXPECT_EQ(s.time(), 10);
+  const double each = angle / b.last, longer = draw / b.last;
+  for (int e = 0; e < b.last; ++e) {
+    EXPECT_NEAR(bond_twist_angle(frame_of(s.state().orientation[e]), frame_of(s.state().orientation[e + 1])), each,
+                1e-8);
+    EXPECT_NEAR((s.state().position[e + 1] - s.state().position[e]).norm(), element_length + longer, 1e-8);
+  }
+  EXPECT_NEAR(s.work(), s.forces().energy.potential(), 2e-3 * s.work());
+  const EndReadings ends = s.read_gauges();
+  EXPECT_NEAR(ends[upper_end].torque.z(), b.bond().twist / element_length * std::sin(each), 1e-5);
+  EXPECT_NEAR(ends[upper_end].turned, angle, 1e-9);
+  EXPECT_NEAR(ends[upper_end].work, s.work(), 1e-6);
+}
+
+// The state of rest of a rope between clamps does not depend on the steps to it, and back it is the first one.
+TEST(Statics, RopeFollowsAClampThereAndBack) {
+  Rope rope(12, 7, 0);
+  rope.loads.add(clamp(lower_end).on_elements(rope.end(lower_end), rope.topology));
+  const GripLoad turned = moved_by(GripLoad::about_z, {{0, 0}, {10, 0.4}, {20, 0}}, 2);
+  rope.loads.add(turned.on_elements(rope.end(upper_end), rope.topology));
+  const RelaxGoal goal{1e-6, 1e-5};
+  const auto energies = [&](const std::vector<double>& times) {
+    Simulation s = rope.make();
+    NewtonStatics newton(s);
+    std::vector<double> out;
+    double work = 0;
+    for (const double time : times) {
+      EXPECT_EQ(newton.follow(time, goal, go_on).end, Statics::End::at_rest) << time;
+      EXPECT_TRUE(newton.relax(goal, 200, go_on).relaxed.at_rest) << time;
+      if (out.empty()) work = s.work();
+      out.push_back(s.forces().energy.potential());
+    }
+    // What the clamp puts in on the way it gets back.
+    EXPECT_NEAR(s.work() - work, out.back() - out.front(), 0.02 * (out[out.size() / 2] - out.front()));
+    return out;
+  };
+  const std::vector<double> few = energies({0, 10, 20}), many = energies({0, 3, 6, 10, 15, 20});
+  EXPECT_GT(few[1] - few[0], 1);
+  EXPECT_NEAR(few[1], many[3], 1e-5);
+  EXPECT_NEAR(few[2], few[0], 1e-5);
+  EXPECT_NEAR(many[5], few[0], 1e-5);
+}
+
 TEST(Statics, MotionsThatNothingHoldsAreNamed) {
   using ::testing::HasSubstr;
   const auto why = [](const Simulation& s) { return NewtonStatics::refusal(s).why; };

@@ -340,6 +340,11 @@ class MeasureTest(FolderTest):
         position[0, 2] = position[0, 1]
         with self.assertRaisesRegex(ropewalk.InputError, "state: .*finite number; two elements lie in one place"):
             of(position, start.orientation)
+        with self.assertRaisesRegex(ropewalk.InputError, "parameters: names no parameter set"):
+            ropewalk.energy(start, [])
+        for begin in ([], [70], [0, 80, 70], [0, 35, 35, 70], [1, 70], [0, -5, 70]):
+            with self.assertRaisesRegex(ValueError, "tubes"):
+                ropewalk.energy(ropewalk.State(start.flat, begin, start.element_length_nm), "cnt-10-10-tersoff")
 
     def test_numbers_of_steps_have_an_end(self):
         simulation = ropewalk.Simulation(ROPE)
@@ -375,6 +380,14 @@ class CheckpointTest(FolderTest):
         np.testing.assert_array_equal(first.state.position, second.state.position)
         self.assertEqual(first.energies, second.energies)
         self.assertEqual(first.measure("balance_eV"), second.measure("balance_eV"))
+
+    def test_what_is_no_file_is_not_waited_for(self):
+        os.mkfifo("pipe")
+        simulation = ropewalk.Simulation(ROPE)
+        with self.assertRaisesRegex(ropewalk.InputError, "pipe: is not a regular file"):
+            simulation.restore("pipe")
+        with self.assertRaises(TypeError):  # a number would be an open file
+            simulation.restore(0)
 
     def test_damaged_and_foreign_checkpoints_are_refused(self):
         simulation = ropewalk.Simulation(ROPE)

@@ -957,7 +957,7 @@ TEST(StateFile, EveryLineAndEveryNumberIsAsItWasWritten) {
   old.erase(std::find_if(old.begin(), old.end(), [](const auto& line) { return line.find("_sum") != line.npos; }));
   ASSERT_EQ(message(old), "");
   old.erase(old.begin() + static_cast<std::ptrdiff_t>(first) + 1);
-  EXPECT_THAT(message(old), HasSubstr(fmt::format("elements.csv:{}: lies ", first + 1)));
+  EXPECT_THAT(message(old), HasSubstr(fmt::format("elements.csv:{}: lies ", first + 2)));
   EXPECT_THAT(message(old), HasSubstr("is a line missing, or are lengths not in nm?"));
   // Numbers that another program has written in its own way are the same ones.
   std::vector<std::string> same = lines;
@@ -1064,7 +1064,7 @@ TEST(StateFile, StatesTheLengthOfItsElements) {
   EXPECT_THAT(message(silent, "element_length_nm = 0.339\n"), HasSubstr("follow one another at 0.678 nm"));
   EXPECT_EQ(message(silent, "element_length_nm = 0.6\n"), "");  // stretched, but of this length
   std::string unreadable = stated;
-  unreadable.replace(unreadable.find("0.678\n0,"), 5, "long");
+  unreadable.replace(unreadable.find("0.678\n# "), 5, "long");
   EXPECT_THAT(message(unreadable, finer), HasSubstr("says \"long\" of the element length"));
 }
 

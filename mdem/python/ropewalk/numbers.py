@@ -53,7 +53,7 @@ def real_array(values: Any, name: str) -> Floats:
         values: of the user
         name: in messages
     """
-    if np.ma.isMaskedArray(values):
+    if isinstance(values, np.ma.MaskedArray):
         raise ValueError(f"{name} is a masked array: fill what is masked")
     array = np.asarray(values)
     if array.dtype.kind not in "fiu":

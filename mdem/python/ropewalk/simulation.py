@@ -10,7 +10,7 @@ from typing import Any, Optional, Union, overload
 
 from . import _core
 from .errors import Error, InputError
-from .files import write_whole
+from .files import read_regular, write_whole
 from .forces import OwnForce, checked
 from .numbers import finite, whole
 from .observables import index_of, observables
@@ -189,13 +189,16 @@ class Simulation:
         """
         n = whole(n, "the number of steps", 0, _most_steps)
         with self._motion("step"):
-            end = self.step_number + n
-            while self.step_number < end:
-                self._call(self._hooks)
-                at = self.step_number
-                stop = min([end, *(at - at % every + every for _, every in self._observers + self._hooks)])
-                self._core.steps(stop - at, energies or stop < end)
-                self._call(self._observers)
+            self._steps(n, energies)
+
+    def _steps(self, n: int, energies: bool = True) -> None:
+        end = self.step_number + n
+        while self.step_number < end:
+            self._call(self._hooks)
+            at = self.step_number
+            stop = min([end, *(at - at % every + every for _, every in self._observers + self._hooks)])
+            self._core.steps(stop - at, energies or stop < end)
+            self._call(self._observers)
 
     def step_until(self, time_ps: float) -> None:
         """Steps on to a time, in whole steps.
@@ -203,10 +206,12 @@ class Simulation:
         Arguments:
             time_ps: ps
         """
-        left = finite(time_ps, "time_ps") - self.time_ps
-        if left < -1e-9:
-            raise ValueError(f"{time_ps} ps lie before {self.time_ps} ps")
-        self.step(round(left / self._core.time_step))
+        time_ps = finite(time_ps, "time_ps")
+        with self._motion("step"):
+            left = time_ps - self.time_ps
+            if left < -1e-9:
+                raise ValueError(f"{time_ps} ps lie before {self.time_ps} ps")
+            self._steps(whole(round(left / self._core.time_step), "the number of steps", 0, _most_steps))
 
     def relax(
         self, force_eV_per_nm: Optional[float] = None, energy: Optional[float] = None, *, max_steps: Optional[int] = None
@@ -352,8 +357,7 @@ class Simulation:
             checkpoint: what checkpoint() returned, or the file that save() wrote (no unit)
         """
         if not isinstance(checkpoint, bytes):
-            with open(checkpoint, "rb") as file:
-                checkpoint = file.read()
+            checkpoint = read_regular(checkpoint)
         with self._motion("restore"):
             self._core.restore(checkpoint)
             text = self._core.driven_as

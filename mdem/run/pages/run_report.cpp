@@ -161,6 +161,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   if (scene.sets.size() == 1)
     in.validity = validities(scene, p.topology).front();  // of more than one, no number holds for all
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
+  if (std::filesystem::exists(dir.equilibria())) in.equilibria = read_equilibria(dir.equilibria());
   in.results = results_of(dir, p);
   add_strength(scene, in);
   const Observer observer = make_observer(scene, p);

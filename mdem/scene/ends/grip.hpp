@@ -89,6 +89,7 @@ class GripDrive : public Drive {
   SceneTable table() const override;
   std::string words() const override;
   std::string needs_time() const override { return load.needs_time(); }
+  bool goes_by_load_steps() const override { return true; }
   std::shared_ptr<const Drive> at_its_end() const override;
   double lasts() const override { return load.lasts(); }
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;

@@ -145,9 +145,9 @@ void TwistDrive::refuse_in_relaxation(const TomlTable& top, const Scene& scene) 
     throw top.error("twist",
                     "does not go with run.solver = \"fire\", which does not come to rest under a held moment",
                     "take solver = \"auto\" or \"newton\", or mode = \"dynamics\"");
-  if (load.unload_rate > 0)
+  if (load.unload_rate > 0 && scene.statics.steps == 0)
     throw t.error("unload_rate_nN_nm_per_ps", "leaves no moment in the end, and run.mode is \"relax\"",
-                  "take it away, or take mode = \"dynamics\"");
+                  "take it away, write [statics] steps = 20, or take mode = \"dynamics\"");
   if (load.geometric_only)
     throw t.error("geometric_only", "relaxes spins from time to time, and run.mode is \"relax\"",
                   "take it away, or take mode = \"dynamics\"");

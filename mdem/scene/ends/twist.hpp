@@ -87,6 +87,7 @@ class TwistDrive : public Drive {
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   std::string needs_time() const override;
+  bool goes_by_load_steps() const override { return true; }
   std::shared_ptr<const Drive> at_its_end() const override;
   double lasts() const override { return load.ramp_time() + load.hold + load.unload_time() + load.unloaded; }
   void add_loads(const Scene&, const Topology& topology, const Interaction&,

@@ -45,7 +45,7 @@ const KeyTable<Expectation>& expect_table() {
                    [](const TomlTable&, const Scene&, Expectation&) {}),
        Key::custom(
            "scene_hash", "", otherwise("\"0123456789abcdef\"", "any"),
-           "of the scene that it holds for, as `check` prints it: once the scene is changed it is not judged",
+           "hash of the scene for which it holds, as `check` prints it; a changed scene is not judged by it",
            [](const TomlTable& t, const Scene&, Expectation& e) {
              if (t.has("scene_hash")) e.scene_hash = t.string("scene_hash");
            })},

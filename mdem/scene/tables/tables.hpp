@@ -18,6 +18,7 @@ const KeyTable<BondOptions>& bond_table();
 const KeyTable<ContactOptions>& contact_table();
 const KeyTable<Damping>& damping_table();
 const KeyTable<RunOptions>& run_table();
+const KeyTable<StaticsOptions>& statics_table();
 const KeyTable<ObserveOptions>& observe_table();
 const KeyTable<LimitOptions>& limits_table();
 const KeyTable<StopRule>& stop_table();

@@ -56,6 +56,12 @@ class Gauges {
   // Sets the work to unknown, after another program has moved the elements.
   void forget_work();
 
+  // What acts at this time is read as of a state at rest: forces on the way to it have no part in a mean.
+  void stand_at(double time) {
+    for (Sum& sum : sums.of) sum.force_time = sum.torque_time = {};
+    sums.since = time;
+  }
+
   // Means since the last reading, which must be earlier.
   EndReadings read(const State& state);
   // The same by the forces of this moment, if no time has passed.

@@ -52,6 +52,14 @@ void add_work(const std::vector<PointLoad>& loads, const State& state, double dt
   gauges.sums = sums;
 }
 
+// The same of constraints: their forces are in the place of impulses.
+void add_work(const std::vector<ConstraintImpulse>& reactions, const State& state, double dt, EnergySupply& account,
+              Gauges& gauges) {
+  std::vector<PointLoad> loads;
+  for (const ConstraintImpulse& r : reactions) loads.push_back({r.element, r.linear, r.angular});
+  add_work(loads, state, dt, account, gauges);
+}
+
 // Calls work(type, i) for every element.
 template <class Work>
 void for_elements(const Topology& topology, const Work& work) {
@@ -374,14 +382,24 @@ bool Simulation::relax_by_fire(double force, long most, const std::function<bool
   return relax_part(most, progress) != PartEnd::interrupted;
 }
 
-void Simulation::displace(const Vec3Array& velocity, const Vec3Array& angular_velocity) {
-  ROPEWALK_EXPECTS(relaxation_.underway() && relaxation_.part_began < 0);
+void Simulation::displace(const Vec3Array& displacement, const Vec3Array& turn, double passes) {
+  ROPEWALK_EXPECTS(relaxation_.underway() && relaxation_.part_began < 0 && passes >= 0);
   relaxation_.constant = total_energy() - account_.supplied();
-  state_.velocity = velocity;
-  state_.angular_velocity = angular_velocity;
-  constrain(topology_, loads_, state_.time, 0.5, state_);
-  add_work(point_loads_, state_, 0.5, account_, gauges_);
-  move(1);
+  const double span = passes > 0 ? passes : 1;  // ps, of the motion
+  for (std::size_t i = 0; i < state_.size(); ++i) {
+    state_.velocity.set(i, displacement[i] / span);
+    state_.angular_velocity.set(i, turn[i] / span);
+  }
+  constrain(topology_, loads_, passes > 0 ? state_.time : before_all_motion, 0.5 * span, state_);
+  const auto add_half_of_work = [&] {
+    add_work(point_loads_, state_, 0.5 * span, account_, gauges_);
+    if (passes > 0)
+      add_work(reactions_at_rest(topology_, loads_, loaded_, forces_, state_), state_, 0.5 * span, account_,
+               gauges_);
+  };
+  add_half_of_work();
+  move(span);
+  state_.time += passes;
   gauges_.follow(state_);
   ++state_.step;
   update_list();
@@ -392,7 +410,8 @@ void Simulation::displace(const Vec3Array& velocity, const Vec3Array& angular_ve
   compute(true, 0);
   std::swap(state_.velocity, way.velocity);
   std::swap(state_.angular_velocity, way.angular_velocity);
-  add_work(point_loads_, state_, 0.5, account_, gauges_);
+  add_half_of_work();
+  if (passes > 0) gauges_.stand_at(state_.time);
   stand_still();
 }
 

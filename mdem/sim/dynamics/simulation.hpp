@@ -57,12 +57,13 @@ class Simulation {
   // underway: with the same goal the next call goes on as if nothing had happened, also from a checkpoint. Steps
   // are counted from its begin.
   Relaxed relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress);
-  // For the solvers of sim/statics: the relaxation with this goal, which begins or goes on; steps of FIRE in it, until
-  // no force is larger (eV/nm), up to the step `most` of the relaxation; and one step by which every element goes, as
-  // far as the constraints let it, along a displacement and a turn (nm, rad, in `velocity` and `angular_velocity`).
+  // For the solvers of sim/statics: the relaxation with this goal, which begins or goes on; steps of FIRE in it,
+  // until no force is larger (eV/nm), up to the step `most` of the relaxation; and one step by which every element
+  // goes, as far as the constraints let it, along a displacement and a turn (nm, rad). In such a step time may go
+  // on by `passes` (ps): loads have their later values, and constraints go as far as their schedules do.
   NewtonPace& relaxation_with(const RelaxGoal& goal);
   bool relax_by_fire(double force, long most, const std::function<bool(long)>& progress);
-  void displace(const Vec3Array& velocity, const Vec3Array& angular_velocity);
+  void displace(const Vec3Array& displacement, const Vec3Array& turn, double passes = 0);
   // Ends the relaxation, and remembers where it came to rest.
   void rest_after(const Relaxed& end);
   const Rest& last_rest() const { return rest_; }

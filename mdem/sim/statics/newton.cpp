@@ -157,7 +157,7 @@ VectorXd NewtonStatics::on_arcs(const VectorXd& d) const {
   return out;
 }
 
-bool NewtonStatics::move(const VectorXd& d) {
+bool NewtonStatics::move(const VectorXd& d, double passes) {
   const VectorXd along = on_arcs(d);
   Vec3Array linear(s_.state().size()), angular(s_.state().size());
   for (std::size_t i = 0; i < s_.state().size(); ++i) {
@@ -165,7 +165,7 @@ bool NewtonStatics::move(const VectorXd& d) {
     linear.set(i, along.segment<3>(row));
     angular.set(i, along.segment<3>(row + 3));
   }
-  s_.displace(linear, angular);
+  s_.displace(linear, angular, passes);
   return std::isfinite(s_.forces().energy.potential()) && s_.forces().slipping_bond < 0;
 }
 
@@ -200,6 +200,74 @@ bool NewtonStatics::push_along(const VectorXd& motion) {
   return best.has_value();
 }
 
+// How constraints lead their elements in the next `passes` ps.
+VectorXd NewtonStatics::led(double passes) const {
+  State way = s_.state();
+  way.velocity.set_to_zero();
+  way.angular_velocity.set_to_zero();
+  constrain(s_.topology(), s_.loads(), way.time, 0.5 * passes, way);
+  VectorXd out(6 * static_cast<Eigen::Index>(way.size()));
+  for (std::size_t i = 0; i < way.size(); ++i)
+    out.segment<6>(6 * static_cast<Eigen::Index>(i)) << passes * way.velocity[i], passes * way.angular_velocity[i];
+  return out;
+}
+
+// The rest of the rope follows by (K + s M) d = f + change of the loads - K u, where constraints lead by u.
+bool NewtonStatics::follow_once(const At& at, double until) {
+  constexpr double least_shift = 0.01, most_shift = 100;  // 1/ps, of the root
+  double passes = until - s_.time();
+  const VectorXd loads = load_forces(s_.loads(), s_.state());
+  for (int tries = 0; tries < most_tries; ++tries) {
+    VectorXd d = led(passes);
+    if (d.isZero(0)) return move(d, passes);
+    if (const double far = farthest(d); far > options_.farthest) {
+      passes *= 0.9 * options_.farthest / far;
+      continue;
+    }
+    State then = s_.state();
+    then.time += passes;
+    VectorXd b = load_forces(s_.loads(), then) - loads, resistance, follows;
+    at.k->multiply(d, resistance);
+    b -= resistance;
+    at.allowed.project_force(b);
+    b += at.force;
+    for (double rate = least_shift; rate < most_shift; rate *= 3)
+      if (!solve(at, rate * rate, b, 0.01, follows).falls) break;
+    d += follows;
+    const double far = farthest(d);
+    const Simulation before = s_;
+    if (far < 2 * options_.farthest && move(d, passes)) return true;
+    s_ = before;
+    passes *= far < 2 * options_.farthest ? 0.5 : options_.farthest / far;
+  }
+  return false;
+}
+
+Statics NewtonStatics::come_near_rest(const std::function<bool(long)>& progress) {
+  constexpr long most_steps = 30;
+  roughly_ = true;
+  const Statics out = relax({fire_until, 1}, most_steps, progress);
+  roughly_ = false;
+  return out;
+}
+
+Statics NewtonStatics::follow(double until, const RelaxGoal& goal, const std::function<bool(long)>& progress) {
+  Statics out;
+  out.end = Statics::End::at_rest;
+  while (s_.time() < until) {
+    if (!progress(0)) return out.end = Statics::End::interrupted, out;
+    s_.relaxation_with(goal);
+    At at(s_);
+    look(at);
+    at.k = &maker_.make(s_);
+    out_.symmetric = at.k->symmetric();
+    if (!follow_once(at, until)) return out.end = Statics::End::refused, out;
+    if (s_.time() < until && come_near_rest(progress).end == Statics::End::interrupted)
+      return out.end = Statics::End::interrupted, out;
+  }
+  return out;
+}
+
 std::string overloaded_bond(const Simulation& s) {
   constexpr double nearly_slipping = 80 * units::degree;
   const Topology& topology = s.topology();
@@ -230,15 +298,20 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
   out_ = {};
   const bool rested = s_.last_rest().step == s_.step_count();
   if (pace->rate == 0) {
-    pace->newton = rested || !options_.fire;
-    pace->rate = rested ? options_.least_rate : options_.first_rate;
+    const bool near = roughly_ || options_.near;
+    pace->newton = rested || near || !options_.fire;
+    pace->rate = rested ? options_.least_rate : near ? nearly_free : options_.first_rate;
   }
   const auto done = [&] { return static_cast<long>(s_.step_count() - (s_.relaxation_began())); };
   const auto end_by = [&](Statics::End why) {
     out_.end = why;
-    if (why != Statics::End::interrupted) s_.rest_after(out_.relaxed);
+    if (roughly_)
+      s_.end_relaxation();
+    else if (why != Statics::End::interrupted)
+      s_.rest_after(out_.relaxed);
     return out_;
   };
+  int overloaded = 0;  // steps
   for (;;) {
     at_newton_ = pace->newton;
     if (!pace->newton) {
@@ -272,10 +345,11 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       const double gain = at.force.dot(d);
       out_.relaxed.above = 0.5 * gain;
       out_.relaxed.error = 2 * std::sqrt(std::max(0.0, out_.relaxed.above) / bonds);
-      const bool free = pace->rate <= 3.1 * options_.least_rate ||
+      const bool free = roughly_ || pace->rate <= 3.1 * options_.least_rate ||
                         (pace->rate < nearly_free && out_.relaxed.above < 0.01 * enough);
       if (out_.relaxed.force < goal.force && out_.relaxed.above <= enough && free) {
         out_.relaxed.at_rest = true;
+        if (roughly_) return end_by(Statics::End::at_rest);
         if (rested && s_.last_rest().step == s_.step_count()) {
           out_.relaxed.saddles = s_.last_rest().saddles;
           return end_by(Statics::End::at_rest);
@@ -331,8 +405,11 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         pace->falling *= 0.5;
       }
     }
+    overloaded = overloaded_bond(s_).empty() ? 0 : overloaded + 1;
+    if (options_.most_overloaded > 0 && overloaded >= options_.most_overloaded)
+      return end_by(Statics::End::out_of_steps);
     if (moved_on) continue;
-    if (!options_.fire || done() >= max_steps) return end_by(Statics::End::refused);
+    if (roughly_ || !options_.fire || done() >= max_steps) return end_by(Statics::End::refused);
     pace->newton = false;
   }
 }

@@ -28,8 +28,11 @@
 namespace ropewalk {
 
 struct NewtonOptions {
-  bool fire = false;       // FIRE goes first, and again where Newton's steps are refused
-  int most = 1000;         // steps of Newton's method; no state of rest that was met needed a fifth of them
+  bool fire = false;  // FIRE goes first, and again where Newton's steps are refused
+  bool near = false;  // of rest: Newton's method goes first, with a smaller shift
+  int most = 1000;    // steps of Newton's method; no state of rest that was met needed a fifth of them
+  int most_overloaded =
+      0;  // steps with a bond beyond its window, one after the other, after which it ends; 0: any number
   double farthest = 0.15;  // nm, of an element in a step; turns at the radius
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
@@ -65,6 +68,10 @@ class NewtonStatics {
   // it, it is still underway. Throws NumericalError where a bond slips, std::runtime_error for a term without
   // tangent.
   Statics relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress);
+  // Takes the simulation to the time `until` (ps), on the way that constraints lead. It goes by steps in which the
+  // rest of the rope follows to first order, and between which it comes near to rest. At the end it is not at rest
+  // yet: relax() is. Ends with Statics::End::at_rest, ::interrupted or, where no step is short enough, ::refused.
+  Statics follow(double until, const RelaxGoal& goal, const std::function<bool(long)>& progress);
   // Whether it is at Newton's method, and not at FIRE.
   bool at_newton() const { return at_newton_; }
   // Why it finds no state of rest, and what to do; empty: nothing speaks against it.
@@ -77,7 +84,10 @@ class NewtonStatics {
   struct At;  // what is known of the present state
   void look(At& at);
   Solution solve(const At& at, double shift, const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
-  bool move(const Eigen::VectorXd& d);
+  Statics come_near_rest(const std::function<bool(long)>& progress);
+  bool follow_once(const At& at, double until);
+  Eigen::VectorXd led(double passes) const;
+  bool move(const Eigen::VectorXd& d, double passes = 0);
   Eigen::VectorXd on_arcs(const Eigen::VectorXd& d) const;
   double farthest(const Eigen::VectorXd& d) const;
   std::optional<Eigen::VectorXd> falling_motion(const At& at);
@@ -88,7 +98,7 @@ class NewtonStatics {
   StiffnessMaker maker_;
   Sections sections_;
   Statics out_;
-  bool at_newton_ = true;
+  bool at_newton_ = true, roughly_ = false;
 };
 
 }  // namespace ropewalk

@@ -27,6 +27,56 @@ Block inverse_of(const Block& d) {
   return e.eigenvectors() * values.cwiseInverse().asDiagonal() * e.eigenvectors().transpose();
 }
 
+// Halves a set of strands across their larger extent until few are left in each part.
+void halve(const std::vector<Vector3>& place, std::vector<int>::iterator begin, std::vector<int>::iterator end,
+           int& parts, std::vector<int>& part) {
+  constexpr std::ptrdiff_t few = 8;
+  if (end - begin <= few) {
+    for (auto s = begin; s != end; ++s) part[static_cast<std::size_t>(*s)] = parts;
+    ++parts;
+    return;
+  }
+  Vector3 low = place[static_cast<std::size_t>(*begin)], high = low;
+  for (auto s = begin; s != end; ++s) {
+    low = low.cwiseMin(place[static_cast<std::size_t>(*s)]);
+    high = high.cwiseMax(place[static_cast<std::size_t>(*s)]);
+  }
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  const auto middle = begin + (end - begin) / 2;
+  std::nth_element(begin, middle, end, [&](int a, int b) {
+    const double x = place[static_cast<std::size_t>(a)][axis], y = place[static_cast<std::size_t>(b)][axis];
+    return x != y ? x < y : a < b;
+  });
+  halve(place, begin, middle, parts, part);
+  halve(place, middle, end, parts, part);
+}
+
+// By the places of the strands in the middle section. A thin rope stays whole.
+void cut_into_parts(const Topology& topology, const State& state, Sections& sections) {
+  constexpr std::size_t thin = 19;
+  std::vector<int> strand_of(state.size());
+  std::vector<Vector3> place;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    if (topology.begins_strand(t))
+      place.push_back(state.position[static_cast<std::size_t>(topology.tube_begin[t])]);
+    for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(e);
+      strand_of[i] = static_cast<int>(place.size()) - 1;
+      if (sections.of[i] == sections.count / 2) place.back() = state.position[i];
+    }
+  }
+  std::vector<int> strands(place.size()), part(place.size());
+  for (std::size_t s = 0; s < strands.size(); ++s) strands[s] = static_cast<int>(s);
+  if (place.size() > thin) {
+    sections.parts_of_each = 0;
+    halve(place, strands.begin(), strands.end(), sections.parts_of_each, part);
+  }
+  sections.part.resize(state.size());
+  for (std::size_t i = 0; i < state.size(); ++i)
+    sections.part[i] = sections.of[i] * sections.parts_of_each + part[static_cast<std::size_t>(strand_of[i])];
+}
+
 }  // namespace
 
 Sections sections_of(const Topology& topology, const State& state) {
@@ -55,6 +105,7 @@ Sections sections_of(const Topology& topology, const State& state) {
     width2 += (state.position[i] - centre[static_cast<std::size_t>(out.of[i])]).squaredNorm();
   for (std::size_t s = 0; s + 1 < centre.size(); ++s) length += (centre[s + 1] - centre[s]).norm();
   if (out.count < 3 || std::sqrt(width2 / static_cast<double>(state.size())) > 0.3 * length) out.count = 0;
+  if (out.count > 0) cut_into_parts(topology, state, out);
   return out;
 }
 
@@ -99,18 +150,28 @@ void Preconditioner::decompose_chains(const BlockMatrix& k, const VectorXd& mass
     }
 }
 
-// Moves along three axes, the turn about the rope's axis, and tilts of all elements in place: tubes slide along one
-// another, so that sections do not stay plane.
+namespace {
+
+std::vector<Vector3> centres_of(const State& state, const std::vector<int>& of, int count) {
+  std::vector<Vector3> centre(static_cast<std::size_t>(count), Vector3::Zero());
+  std::vector<double> elements(centre.size(), 0);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const auto k = static_cast<std::size_t>(of[i]);
+    centre[k] += state.position[i];
+    elements[k] += 1;
+  }
+  for (std::size_t k = 0; k < centre.size(); ++k) centre[k] /= std::max(elements[k], 1.0);
+  return centre;
+}
+
+}  // namespace
+
+// Moves of each part along three axes, its turn about the rope's axis, and tilts of its elements in place: tubes
+// slide along one another, so that sections do not stay plane. Moves and turns of whole sections are sums of these.
 void Preconditioner::find_section_motions(const State& state, const std::vector<char>& held) {
   const auto count = static_cast<std::size_t>(sections_.count);
-  std::vector<Vector3> centre(count, Vector3::Zero());
-  std::vector<double> elements(count, 0);
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    const auto s = static_cast<std::size_t>(sections_.of[i]);
-    centre[s] += state.position[i];
-    elements[s] += 1;
-  }
-  for (std::size_t s = 0; s < count; ++s) centre[s] /= elements[s];
+  const std::vector<Vector3> centre = centres_of(state, sections_.of, sections_.count),
+                             middle = centres_of(state, sections_.part, sections_.parts());
   std::vector<Eigen::Matrix3d> frame(count);
   for (std::size_t s = 0; s < count; ++s) {
     const Vector3 along = (centre[std::min(s + 1, count - 1)] - centre[s > 0 ? s - 1 : 0]).normalized();
@@ -119,10 +180,11 @@ void Preconditioner::find_section_motions(const State& state, const std::vector<
   }
   motion_.resize(state.size());
   for (std::size_t i = 0; i < state.size(); ++i) {
-    const auto s = static_cast<std::size_t>(sections_.of[i]);
+    const Eigen::Matrix3d& f = frame[static_cast<std::size_t>(sections_.of[i])];
+    const Vector3 arm = state.position[i] - middle[static_cast<std::size_t>(sections_.part[i])];
     Block z = Block::Zero();
-    z.topLeftCorner<3, 3>() = z.bottomRightCorner<3, 3>() = frame[s];
-    z.block<3, 1>(0, 5) = frame[s].col(2).cross(Vector3(state.position[i] - centre[s]));
+    z.topLeftCorner<3, 3>() = z.bottomRightCorner<3, 3>() = f;
+    z.block<3, 1>(0, 5) = f.col(2).cross(arm);
     for (int c = 0; c < 6; ++c)
       if (held[6 * i + static_cast<std::size_t>(c)]) z.row(c).setZero();
     motion_[i] = z;
@@ -130,12 +192,12 @@ void Preconditioner::find_section_motions(const State& state, const std::vector<
 }
 
 void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& mass, double shift) {
-  const auto section = [&](int e) { return sections_.of[static_cast<std::size_t>(e)]; };
+  const auto section = [&](int e) { return sections_.part[static_cast<std::size_t>(e)]; };
   int reach = 0;
   for (int i = 0; i < k.rows(); ++i)
     for (int at = k.begin[static_cast<std::size_t>(i)]; at < k.begin[static_cast<std::size_t>(i) + 1]; ++at)
       reach = std::max(reach, std::abs(section(i) - section(k.column[static_cast<std::size_t>(at)])));
-  const int n = 6 * sections_.count, width = 6 * (reach + 1);
+  const int n = 6 * sections_.parts(), width = 6 * (reach + 1);
   band_ = Eigen::MatrixXd::Zero(width, n);
   const auto add = [&](int row_section, int column_section, const Block& b) {
     for (int c = 0; c < 6; ++c)
@@ -179,7 +241,7 @@ void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {
   const auto n = static_cast<int>(band_.cols()), width = static_cast<int>(band_.rows());
   VectorXd b = VectorXd::Zero(n);
   for (std::size_t i = 0; i < motion_.size(); ++i)
-    b.segment<6>(6 * sections_.of[i]).noalias() +=
+    b.segment<6>(6 * sections_.part[i]).noalias() +=
         motion_[i].transpose() * r.segment<6>(6 * static_cast<Eigen::Index>(i));
   for (int j = 0; j < n; ++j) {
     b[j] /= band_(0, j);
@@ -191,7 +253,7 @@ void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {
     b[j] = sum / band_(0, j);
   }
   for (std::size_t i = 0; i < motion_.size(); ++i)
-    z.segment<6>(6 * static_cast<Eigen::Index>(i)).noalias() += motion_[i] * b.segment<6>(6 * sections_.of[i]);
+    z.segment<6>(6 * static_cast<Eigen::Index>(i)).noalias() += motion_[i] * b.segment<6>(6 * sections_.part[i]);
 }
 
 void Preconditioner::solve(const VectorXd& r, VectorXd& z) const {

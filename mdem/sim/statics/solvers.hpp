@@ -18,10 +18,14 @@ namespace ropewalk {
 using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;
 
 // The elements of a rope by sections across it: as many along each strand. None: the elements lie in no sections,
-// as in a film.
+// as in a film. The sections of a thick rope are cut into parts of few neighbouring strands each.
 struct Sections {
   std::vector<int> of;  // of each element
   int count = 0;
+  std::vector<int> part;  // of each element, counted along the rope
+  int parts_of_each = 1;
+
+  int parts() const { return count * parts_of_each; }
 };
 Sections sections_of(const Topology& topology, const State& state);
 

@@ -2,6 +2,7 @@
 // (sim/dynamics/modes.hpp), which hold under loads without a potential as well.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -18,5 +19,20 @@ struct Stability {
 // Returns nothing, and the reason in `why`, where constraints tie several elements, a term has no tangent, the
 // decomposition would take more than `most_bytes`, or no eigenvalue was found.
 std::optional<Stability> stability_of(const Simulation& simulation, double most_bytes, std::string& why);
+
+// What is known of a state at which Newton's method has come to rest.
+struct Statics;
+struct StabilityVerdict {
+  enum class Kind { stable, unstable, unknown };
+  Kind kind = Kind::unknown;
+  double growth = std::numeric_limits<double>::quiet_NaN();  // 1/ps, of the fastest motion; NaN: not known
+  double error = std::numeric_limits<double>::quiet_NaN();   // 1/ps: smaller rates cannot be told from zero
+  std::string why = {};                                      // it is unknown
+
+  std::string words() const;  // a clause
+};
+// By the rates of the modes where these cost little. Else, where forces have a potential, by the search of Newton's
+// method for a motion of negative curvature. Pivots or quotients of the tangent do not tell under couples.
+StabilityVerdict judge_stability(const Simulation& simulation, const Statics& end);
 
 }  // namespace ropewalk

@@ -1,6 +1,7 @@
 // A scene kind of one's own beside the installed library: [pair], two tubes side by side at a distance. How such a file
 // is written: docs/how-to/scene-kind.md.
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/scene.hpp"
 #include "scene/spacing.hpp"
 
 namespace ropewalk {

@@ -138,6 +138,10 @@ TEST(NumericErrors, AreReadAsTheyWereWritten) {
   const std::vector<LogRow> rows = rows_of_errors(runs.path(), log);
   EXPECT_NEAR(rows.at(4)["torque_upper_nN_nm"], 2 * (3 + 8 - 4), 1e-12);
   EXPECT_EQ(rows.at(4)["time_ps"], 4);
+  std::string elsewhere = text;
+  elsewhere.replace(elsewhere.find("half-rate"), 9, "../secret");
+  write_file_atomically(runs.path() + "/errors/numerics.json", elsewhere);
+  EXPECT_THROW(read_numeric_errors(runs.path(), log), InputError);
   write_file_atomically(runs.path() + "/errors/numerics.json", "{}");
   EXPECT_THROW(read_numeric_errors(runs.path(), log), InputError);
   EXPECT_TRUE(rows_of_errors(runs.path() + "/none", log).empty());

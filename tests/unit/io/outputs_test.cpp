@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign/static_rest.hpp"
+#include "campaign/static_threshold.hpp"
 #include "campaign/threshold.hpp"
+#include "io/equilibria.hpp"
 #include "io/frames/dump.hpp"
 #include "io/frames/gsd.hpp"
 #include "io/frames/vtp.hpp"
@@ -37,6 +40,7 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`rope/frame-*.vtp`"), columns_markdown(vtp_arrays()));
   EXPECT_EQ(outputs_table("`state.csv`, `final.csv` and `failed-state.csv`"), columns_markdown(state_columns()));
   EXPECT_EQ(outputs_table("`manifest.json`"), columns_markdown(manifest_keys()));
+  EXPECT_EQ(outputs_table("`equilibria.csv`"), columns_markdown(equilibria_columns()));
   EXPECT_EQ(outputs_table("`events.csv`"), columns_markdown(event_columns()));
   EXPECT_EQ(outputs_table("`ropewalk compare --tensile --csv`"), columns_markdown(tensile_kind().columns));
   EXPECT_EQ(outputs_table("`ropewalk compare --torsion --csv`"), columns_markdown(torsion_kind().columns));
@@ -44,6 +48,8 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("Results in tables of runs"), columns_markdown(result_columns()));
   EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("`ropewalk modes --csv`"), columns_markdown(mode_columns()));
+  EXPECT_EQ(outputs_table("`static-rest.csv`"), columns_markdown(static_rest_columns()));
+  EXPECT_EQ(outputs_table("`NAME-static.csv`"), columns_markdown(static_threshold_columns()));
   EXPECT_EQ(outputs_table("`trials.csv`"), columns_markdown(trial_columns()));
   EXPECT_EQ(outputs_table("An entry of `limits`"), columns_markdown(limit_keys()));
   EXPECT_EQ(outputs_table("An entry of `refinements`"), columns_markdown(refinement_keys()));

@@ -9,6 +9,8 @@
 #include "scene/ends/twist.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/torque.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/tangent.hpp"
@@ -170,6 +172,31 @@ TEST(Stiffness, OfEndsOfTubes) {
   StiffnessMaker maker(with), plain(without);
   const Block block = maker.make(with).diagonal[3] - plain.make(without).diagonal[3];
   EXPECT_GT(block.norm(), 1e-3);
+}
+
+// Stretched and pressed; between tubes, inside of one and to a point; held by several elements at an end.
+TEST(Stiffness, OfTethers) {
+  const std::string rope =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.6\n"
+      "[run]\nmode = \"relax\"\n";
+  const std::string tethers =
+      "[[tether]]\ntube = 0\nelements = [1, 2, 5]\nto_tube = 1\nto_elements = [3, 8]\nstiffness_nN_per_nm = 3\n"
+      "rest_nm = 0.5\n"
+      "[[tether]]\ntube = 2\nelements = [2, 4]\nto_tube = 2\nto_elements = [4, 9]\nstiffness_nN_per_nm = 2\n"
+      "rest_nm = 7\n"
+      "[[tether]]\ntube = 1\nelements = [-1]\nto_point_nm = [3, 1, 20]\nstiffness_nN_per_nm = 5\nrest_nm = 3\n";
+  const auto made = [](const std::string& text) {
+    Scene scene = scene_of_text(text, "scene.toml");
+    return start(scene, prepare(scene));
+  };
+  const Simulation with = made(rope + tethers), without = made(rope);
+  EXPECT_LT(error_of(with), 1e-8);
+  StiffnessMaker maker(with), plain(without);
+  const VectorXd x = VectorXd::LinSpaced(6 * static_cast<Eigen::Index>(with.state().size()), -1, 2);
+  VectorXd y, z;
+  maker.make(with).multiply(x, y);
+  plain.make(without).multiply(x, z);
+  EXPECT_GT((y - z).norm(), 1);
 }
 
 class NoTangent : public ForceTerm {

@@ -1,0 +1,239 @@
+#include "campaign/static_rest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "campaign/rest.hpp"
+#include "model/error.hpp"
+#include "observe/mode_shape.hpp"
+#include "sim/dynamics/modes.hpp"
+#include "sim/statics/load_steps.hpp"
+#include "sim/statics/newton.hpp"
+#include "sim/statics/stiffness.hpp"
+
+namespace ropewalk {
+
+Scene static_scene(Scene scene) {
+  const auto refuse = [&](const std::string& key, const std::string& what) {
+    throw InputError({scene.path, 0, key}, what + ", and --static solves for states of rest", "leave out --static");
+  };
+  if (scene.bath()) refuse("thermostat", "keeps the rope warm");
+  scene.run.mode = RunOptions::Mode::relax;
+  scene.run.solver = RunOptions::Solver::automatic;
+  scene.statics.steps = 0;
+  scene.stops.clear();
+  scene.expected.clear();
+  for (auto& drive : scene.drives) {
+    if (auto held = drive->at_its_end()) drive = std::move(held);
+    if (drive->needs_time().empty()) continue;
+    if (!drive->goes_by_load_steps()) refuse(drive->table().name, drive->needs_time());
+    scene.statics.steps = 1;
+  }
+  return scene;
+}
+
+std::string StaticRest::branch() const {
+  RestSide side;
+  side.shape = shape;
+  side.Q = Q;
+  return side.branch();
+}
+
+namespace {
+
+Simulation simulation_of(const Scene& scene, Prepared prepared, const State* begin) {
+  if (begin) prepared.state = *begin;
+  return start(scene, prepared);
+}
+
+std::string why_not(const Statics& end, const Simulation& s) {
+  if (const std::string bond = overloaded_bond(s); !bond.empty()) return bond;
+  if (end.end == Statics::End::refused) return "no step of Newton's method is short enough";
+  if (end.end == Statics::End::interrupted) return "it was stopped";
+  return fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force,
+                     end.newton_steps);
+}
+
+LogRow row_of(const MovingScene& m) {
+  return log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account());
+}
+
+}  // namespace
+
+StaticRest static_rest(const Scene& scene, const std::string& from, const std::function<bool()>& goes_on,
+                       const State* begin) {
+  MovingScene moving(scene);
+  const LogRow first = row_of(moving);
+  if (begin) moving.simulation = simulation_of(moving.scene, moving.prepared, begin);
+  Simulation& s = moving.simulation;
+  NewtonOptions how;
+  how.fire = scene.run.solver == RunOptions::Solver::automatic;
+  how.most_overloaded = 60;
+  NewtonStatics newton(s, how);
+  const auto progress = [&](long) { return goes_on(); };
+  Statics end;
+  end.end = Statics::End::at_rest;
+  if (scene.statics.steps > 0)
+    end = newton.follow(load_step_times(s.loads(), scene.statics.steps).back(), scene.run.goal, progress);
+  if (end.end == Statics::End::at_rest) end = newton.relax(scene.run.goal, scene.run.max_steps, progress);
+  s.end_relaxation();
+  StaticRest out;
+  out.from = from;
+  out.at_rest = end.relaxed.at_rest;
+  if (!out.at_rest) out.why = why_not(end, s);
+  const LogRow row = row_of(moving);
+  out.twist = row["geometric_twist_deg"];
+  out.beta = row["beta_deg"];
+  out.Q = row["Q"];
+  out.shape = shape_of(row, first);
+  out.force = end.largest_force;
+  out.moment = end.largest_torque;
+  out.above = end.relaxed.above;
+  out.steps = end.newton_steps;
+  out.saddles = end.relaxed.saddles;
+  out.state = s.state();
+  if (out.at_rest) out.stability = judge_stability(s, end);
+  return out;
+}
+
+namespace {
+
+constexpr double per_ns = 1000;  // 1/ps in 1/ns
+
+const char* kind_words(StabilityVerdict::Kind kind) {
+  switch (kind) {
+    case StabilityVerdict::Kind::stable:
+      return "stable";
+    case StabilityVerdict::Kind::unstable:
+      return "unstable";
+    case StabilityVerdict::Kind::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+const char* kind_of(const StaticRest& r) { return r.at_rest ? kind_words(r.stability.kind) : "not at rest"; }
+
+}  // namespace
+
+std::string static_rest_words(const std::vector<StaticRest>& rests, double tolerance) {
+  std::vector<const StaticRest*> different;
+  bool all_stable = true;
+  for (const StaticRest& r : rests) {
+    if (!r.at_rest) return fmt::format("No state of rest was found from {}: {}.", r.from, r.why);
+    all_stable = all_stable && r.stability.kind == StabilityVerdict::Kind::stable;
+    const bool known = std::any_of(different.begin(), different.end(), [&](const StaticRest* d) {
+      return d->branch() == r.branch() && std::fabs(d->twist - r.twist) <= tolerance * std::fabs(d->twist);
+    });
+    if (!known) different.push_back(&r);
+  }
+  const StaticRest& first = *different.front();
+  if (different.size() == 1)
+    return fmt::format("Rests {}: all come to a geometric twist of {:.6g} degrees, beta {:.4g}{}.", first.branch(),
+                       first.twist, first.beta, all_stable ? "; it is stable" : "");
+  std::string words = fmt::format("{} states of rest without friction:", different.size());
+  for (const StaticRest* d : different)
+    words += fmt::format(" {} at {:.6g} degrees ({}){}", d->branch(), d->twist, kind_of(*d),
+                         d == different.back() ? "." : ",");
+  return words;
+}
+
+std::vector<OutputColumn> static_rest_columns() {
+  return {{"from", "", "where Newton's method began: below, above, or along a motion that grows"},
+          {"geometric_twist_deg", "deg", "geometric twist"},
+          {"beta_deg", "deg", "angle of the outermost tubes"},
+          {"Q", "", "packing charge"},
+          {"branch", "", "compact, compact with defects, or open with its shape"},
+          {"stability", "", "stable, unstable or unknown, as in `equilibria.csv`; or not at rest"},
+          {"growth_per_ns", "1/ns", "rate of the motion that grows fastest; nan: not known"},
+          {"error_per_ns", "1/ns", "smaller rates cannot be told from zero; nan: not known"},
+          {"force_eV_per_nm", "eV/nm", "largest force that is left on what is free"},
+          {"moment_eV", "eV", "largest moment that is left"},
+          {"above_eV", "eV", "energy above that of exact rest, by estimate"},
+          {"saddles", "", "saddles of the energy that it left on the way"},
+          {"steps", "", "of Newton's method"}};
+}
+
+std::string static_rest_csv(const std::vector<StaticRest>& rests) {
+  std::string text = column_names(static_rest_columns()) + "\n";
+  for (const StaticRest& r : rests)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.from, r.twist, r.beta, r.Q, r.branch(),
+                        kind_of(r), r.stability.growth * per_ns, r.stability.error * per_ns, r.force, r.moment,
+                        r.above, r.saddles, r.steps);
+  return text;
+}
+
+std::string static_rest_json(const std::vector<StaticRest>& rests, const std::string& words) {
+  using Json = nlohmann::ordered_json;
+  const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
+  Json out = {{"words", words}, {"states", Json::array()}};
+  for (const StaticRest& r : rests)
+    out["states"].push_back({{"from", r.from},
+                             {"at_rest", r.at_rest},
+                             {"why_not", r.why},
+                             {"geometric_twist_deg", number(r.twist)},
+                             {"beta_deg", number(r.beta)},
+                             {"Q", number(r.Q)},
+                             {"branch", r.branch()},
+                             {"stability", kind_of(r)},
+                             {"stability_words", r.at_rest ? r.stability.words() : ""},
+                             {"growth_per_ns", number(r.stability.growth * per_ns)},
+                             {"error_per_ns", number(r.stability.error * per_ns)},
+                             {"force_eV_per_nm", number(r.force)},
+                             {"moment_eV", number(r.moment)},
+                             {"above_eV", number(r.above)},
+                             {"saddles", r.saddles},
+                             {"steps", r.steps}});
+  return out.dump(2) + "\n";
+}
+
+namespace {
+
+// The state's simulation, and the motion that grows fastest there.
+struct Growing {
+  Simulation simulation;
+  Tangent tangent;
+  Mode mode;
+};
+std::optional<Growing> growing_motion(const Scene& scene, const StaticRest& rest) {
+  if (rest.stability.kind != StabilityVerdict::Kind::unstable || std::isnan(rest.stability.growth)) return {};
+  Scene copy = scene;
+  const Prepared prepared = prepare(copy);
+  Simulation s = simulation_of(copy, prepared, &rest.state);
+  const auto free = free_unknowns(s);
+  if (!free) return {};
+  Tangent tangent = tangent_by_blocks(s);
+  Mode mode = modes_of(tangent, *free, {}).modes.front();
+  return Growing{std::move(s), std::move(tangent), std::move(mode)};
+}
+
+}  // namespace
+
+std::string growing_motion_words(const Scene& scene, const StaticRest& rest) {
+  const auto growing = growing_motion(scene, rest);
+  if (!growing) return "";
+  const Simulation& s = growing->simulation;
+  const ModeShape shape = shape_of(s.topology(), s.state(), growing->tangent.mass, growing->mode);
+  if (std::isnan(shape.half_waves) || shape.shares.sideways <= 0.25) return shape.name();
+  return fmt::format("{}, {:.0f} half wave{}, {:+.2f} windings", shape.name(), shape.half_waves,
+                     shape.half_waves == 1 ? "" : "s", shape.windings);
+}
+
+std::vector<State> along_growing_motion(const Scene& scene, const StaticRest& rest) {
+  const auto growing = growing_motion(scene, rest);
+  if (!growing) return {};
+  const Simulation& s = growing->simulation;
+  const Eigen::VectorXd shape = growing->mode.shape.real();
+  double most = 0;
+  for (Eigen::Index row = 0; row < shape.size(); row += 6)
+    most = std::max(
+        {most, shape.segment<3>(row).norm(), s.topology().largest_radius() * shape.segment<3>(row + 3).norm()});
+  const double by = 0.1 * s.topology().largest_radius() / most;
+  return {moved(s.state(), by * shape), moved(s.state(), -by * shape)};
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,55 @@
+// States of rest of a scene without running it: Newton's method under the loads as they are in the end.
+//
+// Friction, links, failure and baths have no part in it: a scene with one of them is refused.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
+#include "observe/rope_shape.hpp"
+#include "run/moving_scene.hpp"
+#include "sim/statics/stability.hpp"
+
+namespace ropewalk {
+
+// The scene as a relaxation by Newton's method, with FIRE where contacts have yet to form. Throws InputError where
+// it has drives that need time.
+Scene static_scene(Scene scene);
+
+struct StaticRest {
+  std::string from;  // "below"
+  bool at_rest = false;
+  std::string why;                          // it is not at rest
+  double twist = 0, beta = 0, Q = 0;        // deg, deg
+  double force = 0, moment = 0, above = 0;  // eV/nm, eV: what is left; eV: above the minimum, by estimate
+  int steps = 0;                            // of Newton's method
+  std::int64_t saddles = 0;                 // of the energy, that it left on the way
+  RopeShape shape = RopeShape::straight;
+  StabilityVerdict stability;
+  State state;  // where it came to
+
+  std::string branch() const;  // as RestSide::branch()
+};
+
+// The state of rest nearest to where the scene begins. With `begin` elements begin there; `goes_on` is asked
+// between steps, and where it says no, the state is not at rest.
+StaticRest static_rest(const Scene& scene, const std::string& from, const std::function<bool()>& goes_on,
+                       const State* begin = nullptr);
+
+// Both ways along the motion that grows fastest, by a part of a radius; none where it is not known.
+std::vector<State> along_growing_motion(const Scene& scene, const StaticRest& rest);
+
+// What the motion that grows fastest moves, as `modes` has it; empty: it is not known.
+std::string growing_motion_words(const Scene& scene, const StaticRest& rest);
+
+// What they say together, in a sentence or two. `tolerance`: part of the twist within which two are one state.
+std::string static_rest_words(const std::vector<StaticRest>& rests, double tolerance);
+
+// A row for each, and all of them with the words.
+std::string static_rest_csv(const std::vector<StaticRest>& rests);
+std::string static_rest_json(const std::vector<StaticRest>& rests, const std::string& words);
+std::vector<OutputColumn> static_rest_columns();
+
+}  // namespace ropewalk

@@ -1,0 +1,35 @@
+// equilibria.csv of a run with load steps: its states of rest, one row each, in the order of the load.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "io/outputs.hpp"
+
+namespace ropewalk {
+
+struct Equilibrium {
+  enum class Stability { stable, unstable, unknown };
+
+  std::int64_t step = 0;  // of the row of log.csv with the same state
+  double time = 0;        // ps
+  Stability stability = Stability::unknown;
+  double growth = std::numeric_limits<double>::quiet_NaN();  // 1/ns, of the fastest motion; NaN: not known
+  double error = std::numeric_limits<double>::quiet_NaN();   // 1/ns: smaller rates cannot be told from zero
+  double force = 0, moment = 0;                              // eV/nm, eV: the largest that is left
+  double above = 0;                                          // eV above the minimum, by estimate
+  int saddles = 0;                                           // of the energy, that it left on the way
+};
+using Equilibria = std::vector<Equilibrium>;
+
+const char* name_of(Equilibrium::Stability stability);
+
+std::string equilibria_csv(const Equilibria& all);
+// Throws InputError with line and column.
+Equilibria read_equilibria(const std::string& path);
+std::vector<OutputColumn> equilibria_columns();
+
+}  // namespace ropewalk

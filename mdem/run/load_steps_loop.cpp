@@ -1,0 +1,151 @@
+#include "run/load_steps_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "sim/dynamics/end_drives.hpp"
+#include "sim/statics/load_steps.hpp"
+#include "sim/statics/stability.hpp"
+
+namespace ropewalk {
+namespace {
+
+Equilibrium::Stability kind_of(StabilityVerdict::Kind kind) {
+  switch (kind) {
+    case StabilityVerdict::Kind::stable:
+      return Equilibrium::Stability::stable;
+    case StabilityVerdict::Kind::unstable:
+      return Equilibrium::Stability::unstable;
+    case StabilityVerdict::Kind::unknown:
+      break;
+  }
+  return Equilibrium::Stability::unknown;
+}
+
+// A wall that has collapsed bears no more, however long it is turned.
+constexpr int enough_overloaded = 60;  // steps
+
+}  // namespace
+
+LoadStepsLoop::LoadStepsLoop(RunParts& run)
+    : run_(run), times_(load_step_times(run.moving.simulation.loads(), run.moving.scene.statics.steps)) {
+  const std::string path = run.files.directory().equilibria();
+  if (std::filesystem::exists(path)) found_ = read_equilibria(path);
+  // A run that was killed behind its last checkpoint comes to the later ones again.
+  found_.erase(std::remove_if(found_.begin(), found_.end(), [&](const auto& e) { return e.step > run.step(); }),
+               found_.end());
+}
+
+std::size_t LoadStepsLoop::next() const { return found_.size(); }
+
+StopReason LoadStepsLoop::go() {
+  run_.listener.begin_loop(static_cast<double>(next()), static_cast<double>(times_.size()));
+  run_.checkpoints.begin_interval();
+  Statics end;
+  end.end = Statics::End::at_rest;
+  while (stop_ == StopReason::none && next() < times_.size()) {
+    // Without a copy the run would stop between two states of rest.
+    const Simulation before = run_.moving.simulation;
+    end = rest_at(times_[next()]);
+    if (stop_ != StopReason::none) {
+      run_.moving.simulation = before;
+      break;
+    }
+    if (!end.relaxed.at_rest) break;
+    write(end);
+    stop_ = run_.limits.check(true);
+    if (stop_ == StopReason::none) stop_ = run_.asked_to_stop();
+    if (stop_ == StopReason::none) run_.checkpoints.save_if_due();
+  }
+  if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return run_.stop(stop_);
+  run_.listener.end_loop();
+  run_.at_rest = next() == times_.size();
+  run_.reason = words_of_curve() + (stop_ == StopReason::none ? words_of_end(end) : std::string());
+  if (stop_ == StopReason::complete) run_.reason += "; it ended by --steps";
+  run_.keep_for(stop_);
+  run_.moving.simulation.end_relaxation();
+  run_.write_last();
+  return stop_ == StopReason::limit ? stop_ : StopReason::complete;
+}
+
+Statics LoadStepsLoop::rest_at(double time) {
+  const RunOptions& options = run_.moving.scene.run;
+  Simulation& simulation = run_.moving.simulation;
+  NewtonOptions how;
+  how.fire = options.solver == RunOptions::Solver::automatic;
+  how.near = !begins();
+  how.most_overloaded = enough_overloaded;
+  NewtonStatics newton(simulation, how);
+  const auto go_on = [this](long) { return goes_on(); };
+  Statics out = newton.follow(time, options.goal, go_on);
+  if (out.end != Statics::End::at_rest) return out;
+  return newton.relax(options.goal, options.max_steps, go_on);
+}
+
+bool LoadStepsLoop::goes_on() {
+  if (run_.listener.wants_progress())
+    run_.listener.progress(static_cast<double>(next()), load_words(run_.moving.simulation.time()));
+  const std::int64_t last = run_.schedule.last_step();
+  stop_ = last >= 0 && run_.step() >= last ? StopReason::complete : run_.asked_to_stop();
+  return stop_ == StopReason::none;
+}
+
+void LoadStepsLoop::write(const Statics& end) {
+  const StabilityVerdict verdict = judge_stability(run_.moving.simulation, end);
+  constexpr double per_ns = 1000;  // 1/ps in 1/ns
+  Equilibrium e;
+  e.step = run_.step();
+  e.time = run_.moving.simulation.time();
+  e.stability = kind_of(verdict.kind);
+  e.growth = verdict.growth * per_ns;
+  e.error = verdict.error * per_ns;
+  e.force = end.largest_force;
+  e.moment = end.largest_torque;
+  e.above = end.relaxed.above;
+  e.saddles = static_cast<int>(end.relaxed.saddles);
+  found_.push_back(e);
+  if (run_.files.row_step() != run_.step()) run_.write_row();
+  if (run_.files.frame_step() != run_.step()) run_.write_frame();
+  run_.files.write_equilibria(found_);
+  run_.rollback.take_snapshot();
+}
+
+std::string LoadStepsLoop::load_words(double time) const {
+  const Simulation& s = run_.moving.simulation;
+  const EndDrives drives = end_drives(s.loads(), s.topology());
+  if (end_moment(drives)) return fmt::format("{:.4g} nN nm", moment_at(drives, time) / units::nN_nm);
+  return fmt::format("{:.4g} ps", time);
+}
+
+std::string LoadStepsLoop::words_of_end(const Statics& end) const {
+  if (next() == times_.size()) return "";
+  const Simulation& s = run_.moving.simulation;
+  std::string words = fmt::format("; none was found at the next one, {}: ", load_words(times_[next()]));
+  if (const std::string bond = overloaded_bond(s); !bond.empty()) return words + bond;
+  if (end.end == Statics::End::refused)
+    return words + "no step of Newton's method is short enough, as where states of rest end (a fold)";
+  return words + fmt::format("{:.2g} eV/nm are left", end.relaxed.force);
+}
+
+std::string LoadStepsLoop::words_of_curve() const {
+  std::string words = fmt::format("{} of {} states of rest", next(), times_.size());
+  const auto first = std::find_if(found_.begin(), found_.end(), [](const Equilibrium& e) {
+    return e.stability == Equilibrium::Stability::unstable;
+  });
+  const auto count = [&](Equilibrium::Stability s) {
+    return std::count_if(found_.begin(), found_.end(), [&](const Equilibrium& e) { return e.stability == s; });
+  };
+  if (first != found_.end())
+    words += fmt::format(", {} of them unstable, the first at {}", count(Equilibrium::Stability::unstable),
+                         load_words(first->time));
+  else if (!found_.empty() && count(Equilibrium::Stability::unknown) == 0)
+    words += ", all stable";
+  if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
+    words += fmt::format("; of {} it cannot be told whether they are stable", unknown);
+  return words;
+}
+
+}  // namespace ropewalk
