@@ -296,7 +296,7 @@ class MeasureTest(FolderTest):
         })
         simulation.step_until(4)
         self.assertGreater(simulation.measure("bonds_broken"), 0)
-        self.assertGreater(abs(simulation.energies.terms), 0.01)
+        self.assertGreater(abs(simulation.energies.terms), 1e-3)
         for reference in (False, True):
             found = ropewalk.energy(simulation, reference=reference)
             for name in ("stretch", "bend", "vdw", "terms"):
