@@ -5,7 +5,7 @@
 
 #include "cli/command_line.hpp"
 #include "io/data_files.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "model/error.hpp"
@@ -25,6 +25,7 @@ struct Verbs {
   CheckShippedArguments check_shipped;
   FrictionArguments friction;
   PullArguments pull;
+  FluctuationsArguments fluctuations;
   int code = 0;
 };
 
@@ -126,6 +127,26 @@ void add_verbs(CLI::App& app, Verbs& v) {
   pull->add_flag("--force", v.pull.force, "Replace existing files, as to change a set where it lies");
   pull->callback([&v] { v.code = pull_command(v.pull); });
 
+  CLI::App* fluctuations = app.add_subcommand(
+      "fluctuations",
+      "EA, EI, GJ and their coupling from how the tubes of a run move in heat, beside those of a set");
+  FluctuationsArguments& m = v.fluctuations;
+  fluctuations
+      ->add_option("run", m.run, "Directory of a run: of ropewalk run with a thermostat, or of ropewalk coarsen")
+      ->required();
+  fluctuations
+      ->add_option("--temperature", m.temperature, "Of the motion, K [default: that of the run's thermostat]")
+      ->check(number_within(Bounds::range(1, 1e4)));
+  fluctuations->add_option("--after", m.after, "Leave out so much time at the start, ps")
+      ->capture_default_str()
+      ->check(number_within(Bounds::non_negative()));
+  fluctuations->add_option("--against", m.against,
+                           "Set to compare with: a file or a name [default: that of the run]");
+  fluctuations->add_option("--out", m.out, "Write that set with these stiffnesses to this file");
+  fluctuations->add_flag("--json", m.json, "JSON");
+  fluctuations->add_flag("--force", m.force, "Replace an existing file");
+  fluctuations->callback([&v] { v.code = fluctuations_command(v.fluctuations); });
+
   CLI::App* universal = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");
   add_law(*universal, v.universal.lj, v.universal.lj_cutoff);
   universal->add_option("--out", v.universal.out, "File [default: the shipped one]");
@@ -153,7 +174,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   Verbs verbs;
   verbs.calibrate.command = verbs.friction.command = verbs.fit.command = verbs.universal.command =
-      verbs.pull.command = command_line(argc, argv);
+      verbs.pull.command = verbs.fluctuations.command = command_line(argc, argv);
   add_calibrate(app, verbs);
   add_verbs(app, verbs);
   add_describe(app, [] {
@@ -174,10 +195,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ropewalk calibrate: %s\n", usage_error(app, e, "ropewalk calibrate").c_str());
     return 2;
   } catch (const std::exception& e) {
-    if (interrupted_by() != 0 && failure_code(e) == 3) {
+    if (interrupted_by() != 0 && error_code(e) == 3) {
       std::fprintf(stderr, "\nropewalk calibrate: interrupted; nothing was written\n");
       return 128 + interrupted_by();
     }
-    return tell_failure("ropewalk calibrate", e);
+    return report_error("ropewalk calibrate", e);
   }
 }

@@ -49,8 +49,9 @@ else()
   add_custom_target(ropewalk_made_pages ALL DEPENDS ${made_files})
 endif()
 
-# The libraries, for programs of your own: Ropewalk::campaign is the highest, and brings all others.
-set(libraries model sim observe io report scene plan run campaign)
+# The libraries, for programs of your own: Ropewalk::campaign brings all those below it, and Ropewalk::program has the whole
+# of `ropewalk`, with its main().
+set(libraries model sim observe io atoms report scene plan run campaign bench exchange cli commands program)
 foreach(library ${libraries})
   set_target_properties(ropewalk_${library} PROPERTIES EXPORT_NAME ${library})
   list(APPEND library_targets ropewalk_${library})

@@ -17,18 +17,21 @@
 #include "commands/commands.hpp"
 #include "commands/limit_help.hpp"
 #include "commands/siblings.hpp"
+#include "commands/table_help.hpp"
 #include "io/data_files.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 #include "observe/limits.hpp"
 #include "run/cores.hpp"
+#include "run/pages/colour_fields.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/templates.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 #include "version.hpp"
 
 namespace {
@@ -42,7 +45,7 @@ using namespace ropewalk;
 // main: start once more with them, unless the user has chosen otherwise. (Under valgrind, set
 // OMP_WAIT_POLICY=passive yourself, or the second start runs outside it.)
 void wait_briefly(char** argv, int threads) {
-  if ((threads > 0 ? threads : omp_get_max_threads()) == 1) return;
+  if ((threads > 0 ? threads : threads_in_use()) == 1) return;
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "2000", 1);
   give_back_cores();
@@ -74,6 +77,8 @@ struct Verbs {
   PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
+  AtomsArguments atoms;
+  CoarsenArguments coarsen;
   std::string check_scene, help_topic, cited_run;
   int code = 0;
 };
@@ -113,7 +118,15 @@ void add_device(CLI::App* c, std::string& name, const std::string& by_default) {
                     by_default + "]");
 }
 
-CLI::Validator thread_range() { return whole_number(1, 1024); }
+CLI::Option* add_colour(CLI::App* c, std::string& colour, const char* what) {
+  return c
+      ->add_option("--colour", colour,
+                   fmt::format("{} are coloured by: {} [default: moment, where frames have it]", what,
+                               fmt::join(colour_words(), ", ")))
+      ->check(CLI::IsMember(colour_words()));
+}
+
+CLI::Validator thread_range() { return whole_number(1, most_threads); }
 
 void add_new(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");
@@ -146,6 +159,10 @@ void add_run(CLI::App& app, Verbs& v) {
   add_instructions(c, v.run.instructions, "the calculation, for the same bits on other processors",
                    instruction_sets().front());
   add_device(c, v.run.device, "none");
+  c->add_option(
+      "--slurm", v.run.slurm,
+      "Only write a SLURM job to this file that runs the scene in pieces of --wall-time, and submits itself "
+      "until the run is done");
   c->add_flag("--force", v.run.force, "Replace an earlier run in --out");
   c->add_flag("--quiet", v.run.quiet, "No progress line");
   c->callback([&v] {
@@ -159,6 +176,12 @@ void add_errors(CLI::App& app, Verbs& v) {
       "errors",
       "Errors of a finished run's results that follow from those of its sets, files and typed numbers: repeats it");
   c->add_option("dir", v.errors.dir, "Directory of the run")->required();
+  CLI::Option* numerics = c->add_flag(
+      "--numerics", v.errors.numerics,
+      "The whole error: also by elements, time step and rate, each halved, and by other starts and random numbers");
+  c->add_option("--mean", v.errors.mean_ps, "Of means over the last so many ps, in the place of the last row")
+      ->check(number_within(Bounds::positive()))
+      ->needs(numerics);
   c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
   c->add_flag("--again", v.errors.again, "Repeat also what is finished");
   c->add_flag("--json", v.errors.json, "JSON");
@@ -188,12 +211,16 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
-  c->add_flag("--tensile", v.compare.tensile,
-              "Runs that pull a rope: strength, modulus, toughness and breaks, over what --x was before the pull");
+  c->add_option(
+       "--mean", v.compare.mean_ps,
+       "Runs: the table, and --csv, have means over the last so many ps, each with its error and correlation time")
+      ->check(number_within(Bounds::positive()));
+  c->add_flag(
+      "--tensile", v.compare.tensile,
+      "Runs that pull a rope: strength, modulus, toughness and breaks, against the value of --x before the pull");
   c->add_flag("--torsion", v.compare.torsion,
-              "Runs that twist a rope: largest torque, its angle, first break and stored energy, over what --x was "
-              "at that "
-              "torque")
+              "Runs that twist a rope: largest torque, its angle, first break and stored energy, against the value "
+              "of --x at that torque")
       ->excludes("--tensile");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
@@ -269,6 +296,7 @@ void add_picture(CLI::App& app, Verbs& v) {
       ->delimiter(',');
   c->add_option("--x", v.picture.x,
                 "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");
+  add_colour(c, v.picture.colour, "Tubes");
   c->add_flag("--sections", v.picture.sections, "The cross-section of each state beside it");
   c->add_option("--width", v.picture.width, "Width of the figure, pixels")
       ->capture_default_str()
@@ -301,6 +329,7 @@ void add_view(CLI::App& app, Verbs& v) {
                 "Movie, seen from: side (the largest deflection in the picture), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str()
       ->needs(movie);
+  add_colour(c, v.view.colour, "Movie: tubes")->needs(movie);
   c->add_option("--fps", v.view.fps, "Movie: frames per second")
       ->capture_default_str()
       ->check(number_within(Bounds::range(0.1, 120.0)))
@@ -311,6 +340,73 @@ void add_view(CLI::App& app, Verbs& v) {
       ->needs(movie);
   c->add_flag("--force", v.view.force, "Replace the file of -o or --movie");
   c->callback([&v] { v.code = view_command(v.view); });
+}
+
+void add_atoms(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "atoms", "Elements as atoms: a frame of a run, or a state, as a LAMMPS data file or extended XYZ");
+  c->add_option("path", v.atoms.path, "Directory of a run, or a state file (CSV)")->required();
+  c->add_option(
+       "-o", v.atoms.out,
+       "File to write: .data for LAMMPS, .xyz or .extxyz. Beside it: which atoms are of which element, and an "
+       "input of LAMMPS that relaxes them")
+      ->required();
+  CLI::Option* frame =
+      c->add_option("--frame", v.atoms.frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
+  CLI::Option* at =
+      c->add_option("--at", v.atoms.at,
+                    "A limit that the run has passed: the place where it did so first, in the last frame "
+                    "before that")
+          ->excludes(frame);
+  c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(1, 1000)))
+      ->needs(at);
+  c->add_option("--tubes", v.atoms.tubes, "These tubes alone, from 0: 0-18,20");
+  c->add_option("--between", v.atoms.between,
+                "This stretch of each tube alone, nm from its first end at rest: 20,40");
+  c->add_flag("--relax", v.atoms.relax,
+              "Have LAMMPS minimise the energy with the ends held, and print it beside that of the model");
+  c->add_option("--potential", v.atoms.potential,
+                "tersoff, airebo, rebo, lcbop, or a file of pair_style and pair_coeff lines [default: the set's]");
+  c->add_option("--parameters", v.atoms.state.parameters,
+                "Of a state file: its parameter set; several, separated by commas, for tube types")
+      ->delimiter(',');
+  c->add_option("--tube-types", v.atoms.state.tube_types,
+                "Of a state file: which of the sets each tube is [default: all the first]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", v.atoms.state.element_length,
+                "Of a state file: length of an element [default: what it says, else the set's]")
+      ->check(number_within(Bounds::range(0.05, 50)));
+  c->add_flag("--json", v.atoms.json, "With --relax: JSON");
+  c->add_flag("--force", v.atoms.force, "Replace existing files");
+  c->callback([&v] { v.code = atoms_command(v.atoms); });
+}
+
+void add_coarsen(CLI::App& app, Verbs& v) {
+  CLI::App* c = app.add_subcommand(
+      "coarsen", "Atoms as elements: tubes found in LAMMPS data files, dumps or XYZ become a run, or a state");
+  c->add_option("files", v.coarsen.files,
+                "Files of one simulation: LAMMPS data, LAMMPS text dumps, XYZ or extended XYZ; lengths in Angstrom")
+      ->required()
+      ->check(CLI::ExistingFile);
+  CLI::Option* out = c->add_option("-o,--out", v.coarsen.out,
+                                   "Directory of the run to make, for observe, report, view and compare");
+  c->add_option("--state", v.coarsen.state, "Write the last frame as a state (CSV), from which a scene can start")
+      ->excludes(out);
+  c->add_option("--parameters", v.coarsen.parameters,
+                "Parameter sets, one for each (n,m) [default: shipped ones of what is found]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", v.coarsen.element_length,
+                "Length of an element [default: the set's, of the first kind of tube]")
+      ->check(number_within(Bounds::range(0.3, 50)));
+  c->add_option("--time-step-fs", v.coarsen.time_step_fs, "Time step of the MD, for dumps without ITEM: TIME")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive(1e6)));
+  c->add_flag("--json", v.coarsen.json, "What was found, as JSON");
+  c->add_flag("--force", v.coarsen.force, "Replace an earlier run in --out, or the file");
+  c->add_flag("--quiet", v.coarsen.quiet, "Say nothing of each tube");
+  c->callback([&v] { v.code = coarsen_command(v.coarsen); });
 }
 
 void add_energy(CLI::App& app, Verbs& v) {
@@ -332,6 +428,10 @@ void add_energy(CLI::App& app, Verbs& v) {
   c->add_option("--element-length-nm", v.energy.options.element_length,
                 "Length of an element [default: what the state file says, else the set's]")
       ->check(number_within(Bounds::range(0.05, 50)));
+  c->add_option("--free-length-nm", v.energy.options.free_length,
+                "Length of the tubes between what holds them in a scene, by which twisted tubes collapse [default: "
+                "the whole length]")
+      ->check(number_within(Bounds::positive()));
   c->add_option("--exclude-along-tube-nm", v.energy.options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
       ->check(number_within(Bounds::positive()));
@@ -348,7 +448,7 @@ void add_sweep(CLI::App& app, Verbs& v) {
       app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
   c->add_option("file", v.sweep.file, "Sweep (TOML): scene = \"rope.toml\", then [vary] with rope.tubes = [7, 19]")
       ->required();
-  c->add_option("--out", v.sweep.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("--out", v.sweep.out, "Directory of the campaign, where the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.sweep.jobs, "Runs at a time, each on one core [default: all cores]")
       ->check(thread_range());
   c->add_flag("--dry-run", v.sweep.dry_run, "Only list the points and what they cost");
@@ -371,7 +471,8 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("file", v.threshold.file,
                 "Sweep (TOML) with [threshold]: key, from, to, and column and above, or shape")
       ->required();
-  c->add_option("--out", v.threshold.out, "Directory of the campaign; the same command goes on [default: FILE]");
+  c->add_option("--out", v.threshold.out,
+                "Directory of the campaign, where the same command goes on [default: FILE]");
   c->add_option("-j,--jobs", v.threshold.jobs, "Points at a time, each on one core [default: all cores]")
       ->check(thread_range());
   c->add_option("--known", v.threshold.known,
@@ -397,7 +498,8 @@ void add_rest(CLI::App& app, Verbs& v) {
   c->add_option("--viscosity", v.rest.viscosity,
                 "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
       ->check(CLI::NonNegativeNumber);
-  c->add_option("--tolerance", v.rest.tolerance, "Part of the twist within which both sides are at rest and agree")
+  c->add_option("--tolerance", v.rest.tolerance,
+                "Both sides count as at rest, and as equal, within this part of the twist")
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());
@@ -419,7 +521,8 @@ void add_modes(CLI::App& app, Verbs& v) {
   c->add_option("--count", v.modes.count, "Eigenvalues to find")
       ->capture_default_str()
       ->check(whole_number(1, 200));
-  c->add_option("--shift", v.modes.shift, "Those nearest to this rate (1/ns), which should be above the largest")
+  c->add_option("--shift", v.modes.shift,
+                "Find the motions with growth rates nearest to this one (1/ns); choose it above the largest rate")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e5));
   c->add_flag("--anyway", v.modes.anyway, "Also for a state that does not rest: its motions as if it stood still");
@@ -548,23 +651,25 @@ void add_help(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand("help", "The help of a verb; help scene: every key of a scene, with its unit");
   c->add_option("topic", v.help_topic,
                 "A verb; scene; a table of a scene, as links or [run]; one of its keys; or a limit that a run has "
-                "passed [default: "
-                "the list of verbs]");
+                "passed [default: the list of verbs]");
   c->callback([&app, &v] {
     if (v.help_topic == "scene") {
       std::puts(scene_key_help().c_str());
       return;
     }
-    const std::string keys = scene_key_help(v.help_topic), limit = limit_help(v.help_topic);
-    if (!keys.empty() || !limit.empty()) {
-      std::fputs((keys + (keys.empty() || limit.empty() ? "" : "\n") + limit).c_str(), stdout);
+    std::string text;  // one word may be a table, a key and a limit
+    for (const std::string& part :
+         {table_help(v.help_topic), scene_key_help(v.help_topic), limit_help(v.help_topic)})
+      text += (text.empty() || part.empty() ? "" : "\n") + part;
+    if (!text.empty()) {
+      std::fputs(text.c_str(), stdout);
       return;
     }
     std::vector<std::string> topics = listed_verbs(app);
     topics.emplace_back("scene");
     for (const std::string& limit : limit_headings()) topics.push_back(limit);
     for (const SceneTable& t : scene_tables()) {
-      if (!t.name.empty()) topics.push_back(t.name);
+      topics.push_back(t.name.empty() ? "top" : t.name);
       for (const SceneKey& k : t.keys) topics.push_back(k.key);
     }
     const std::string near = nearest_word(v.help_topic, topics);
@@ -583,7 +688,10 @@ nlohmann::ordered_json scenes_and_limits() {
                       {"unit", k.unit},
                       {"standard", k.standard.empty() ? k.value : k.standard},
                       {"meaning", k.meaning}});
-    scene.push_back({{"table", t.name.empty() ? "" : t.header()}, {"meaning", t.meaning}, {"keys", keys}});
+    auto parts = nlohmann::ordered_json::array();
+    for (const TablePart& part : table_parts(t)) parts.push_back({{"heading", part.heading}, {"text", part.text}});
+    scene.push_back(
+        {{"table", t.name.empty() ? "" : t.header()}, {"meaning", t.meaning}, {"keys", keys}, {"parts", parts}});
   }
   for (const LimitKind& kind : limit_kinds())
     limits.push_back({{"key", kind.key},
@@ -591,7 +699,7 @@ nlohmann::ordered_json scenes_and_limits() {
                       {"what", kind.what},
                       {"consequence", kind.consequence},
                       {"remedy", kind.remedy}});
-  return {{"scene", scene}, {"limits", limits}};
+  return {{"scene", scene}, {"described_tables", described_tables()}, {"limits", limits}};
 }
 
 Description description() {
@@ -652,6 +760,8 @@ int main(int argc, char** argv) {
   add_plan(app, verbs);
   add_export(app, verbs);
   add_import(app, verbs);
+  add_atoms(app, verbs);
+  add_coarsen(app, verbs);
   // Handed over before anything is parsed; named here for --help.
   app.add_subcommand("calibrate", "Derive a parameter set for any (n,m) from atomistic data");
   app.add_subcommand("validate", "Hold the model against theory, atoms and other codes");
@@ -671,7 +781,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ropewalk: %s\n", usage_error(app, e, "ropewalk").c_str());
     return 2;
   } catch (const std::exception& e) {
-    return tell_failure("ropewalk", e);
+    return report_error("ropewalk", e);
   }
   return code_at_exit("ropewalk", verbs.code);
 }

@@ -6,7 +6,7 @@
 #include "chart/chart.hpp"
 #include "cli/command_line.hpp"
 #include "io/data_files.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "parametrize/parametrize.hpp"
@@ -153,6 +153,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s: %s\n", spoken, usage_error(app, e, name).c_str());
     return 2;
   } catch (const std::exception& e) {
-    return tell_failure(spoken, e);
+    return report_error(spoken, e);
   }
 }

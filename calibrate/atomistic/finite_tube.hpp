@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lattice.hpp"
-#include "atomistic/potential.hpp"
+#include "atoms/lattice.hpp"
+#include "atoms/potential.hpp"
 
 namespace ropewalk::calibrate {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lattice.hpp"
 #include "atomistic/stiffness.hpp"
+#include "atoms/lattice.hpp"
 
 namespace ropewalk::calibrate {
 

@@ -25,8 +25,8 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lammps.hpp"
-#include "atomistic/potential.hpp"
+#include "atoms/lammps.hpp"
+#include "atoms/potential.hpp"
 #include "io/outputs.hpp"
 #include "model/anharmonic.hpp"
 #include "model/tube.hpp"

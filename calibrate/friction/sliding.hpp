@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lammps.hpp"
-#include "atomistic/lattice.hpp"
-#include "atomistic/potential.hpp"
+#include "atoms/lammps.hpp"
+#include "atoms/lattice.hpp"
+#include "atoms/potential.hpp"
 #include "friction/strength.hpp"
 
 namespace ropewalk::calibrate {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atomistic/lattice.hpp"
 #include "atomistic/runs.hpp"
+#include "atoms/lattice.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
 #include "io/files.hpp"

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "atomistic/finite_tube.hpp"
+#include "atoms/tube_reference.hpp"
 #include "friction/sliding.hpp"
 #include "friction/strength.hpp"
 #include "io/clocks.hpp"
@@ -52,10 +53,7 @@ Tube tube_of(const std::string& name) {
   if (!(tube.set.line->universal.lj_cutoff > 0))
     throw InputError({tube.set.path, 0, "contact.line.lj_cutoff"}, "is 0, and friction needs a cutoff",
                      "take a set with one");
-  const Quantity* twist = find_quantity(tube.set, "atomistic.natural_twist");
-  tube.shape.radius = tube.set.radius;
-  tube.shape.length_per_hexagon = 2 / tube.set.atoms_per_length;
-  tube.shape.twist = twist ? twist->value : 0;
+  tube.shape = reference_of(tube.set).shape;
   return tube;
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "atomistic/runs.hpp"
+#include "atoms/tube_reference.hpp"
 #include "io/data_files.hpp"
 #include "io/file_group.hpp"
 #include "io/files.hpp"
@@ -38,9 +39,7 @@ std::string stored_table(const ParameterSet& set, const std::string& kind) {
 
 RelaxedTube tube_at_rest(const ParameterSet& set) {
   RelaxedTube tube;
-  tube.shape.radius = set.radius;
-  tube.shape.length_per_hexagon = 2 / set.atoms_per_length;
-  tube.shape.twist = number_of(set, "atomistic.natural_twist");
+  tube.shape = reference_of(set).shape;
   tube.energy_per_hexagon = 2 * number_of(set, "atomistic.energy_per_atom");
   tube.contraction = number_of(set, "atomistic.poisson");
   return tube;

@@ -82,6 +82,17 @@ struct PullArguments {
 };
 int pull_command(const PullArguments& arguments);
 
+struct FluctuationsArguments {
+  std::string run;         // its directory
+  double temperature = 0;  // K; 0: that of the run's thermostat
+  double after = 0;        // ps, which are left out
+  std::string against;     // set to compare with; empty: the run's
+  std::string out;         // set to write; empty: none
+  bool json = false, force = false;
+  std::string command;
+};
+int fluctuations_command(const FluctuationsArguments& arguments);
+
 // --- Shared by the verbs ---
 
 // On Ctrl-C and TERM the LAMMPS child is ended first and temporary files are removed. interrupted_by() is the

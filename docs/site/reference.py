@@ -83,16 +83,47 @@ def commands(programs):
 
 # --- Scenes ---
 
+def key_table(keys):
+    return table(["key", "unit", "default", "meaning"],
+                 [[code(k["key"]), cell(k["unit"]), cell(k["standard"]), cell(k["meaning"])] for k in keys])
+
+
+def page_of(scene_table):
+    """The name of a table's page."""
+    return scene_table["table"].strip("[]") or "top"
+
+
+def sentence(text):
+    return cell(text[:1].upper() + text[1:]) + "."
+
+
 def scene(program):
     text = made + "# Keys of a scene\n\n`ropewalk new` writes a scene with all of them, `ropewalk help scene` prints "
-    text += "them. A key that is\nnot typed has the default.\n"
+    text += "them. A key that is\nnot typed has the default. Each table has a page: syntax, example, formula, what it does not go with.\n"
     for t in program["scene"]:
-        head = f"`{t['table']}`" if t["table"] else "At the top of the file"
-        meaning = t["meaning"] if t["table"] else ""
-        text += f"\n## {head}\n\n" + (cell(meaning[:1].upper() + meaning[1:]) + ".\n\n" if meaning else "")
-        text += table(["key", "unit", "default", "meaning"],
-                      [[code(k["key"]), cell(k["unit"]), cell(k["standard"]), cell(k["meaning"])] for k in t["keys"]])
+        head = f"`{t['table']}`" if t["table"] else "Top"
+        meaning = sentence(t["meaning"] if t["table"] else "at the top of the file") + f" [More](tables/{page_of(t)}.md)"
+        text += f"\n## {head}\n\n{meaning}\n\n" + key_table(t["keys"])
     return text
+
+
+def scene_tables(program):
+    """A page for each table of a scene, of what docs/tables.md, docs/theory.md and the program say of it."""
+    pages, names = {}, {page_of(t) for t in program["scene"]}
+    for t in program["scene"]:
+        text = made + f"# {'`' + t['table'] + '`' if t['table'] else 'The top of a scene'}\n"
+        for part in t["parts"]:
+            if not part["text"]:
+                raise SystemExit(f"reference.py: docs/tables.md, below \"## {page_of(t)}\": there is no "
+                                 + (f"\"{part['heading']}\"" if part["heading"] else "paragraph"))
+            keys = part["heading"] == "Keys"
+            text += (f"\n## {part['heading']}\n" if part["heading"] else "")
+            text += "\n" + (key_table(t["keys"]) if keys else part["text"] + "\n")
+        pages[f"tables/{page_of(t)}.md"] = text
+    unknown = set(program["described_tables"]) - names
+    if unknown:
+        raise SystemExit(f"reference.py: docs/tables.md: a scene has no table {', '.join(sorted(unknown))}")
+    return pages
 
 
 # --- Messages ---
@@ -246,5 +277,5 @@ def pages(repository, folder, tags):
     ropewalk = folder / "mdem/ropewalk"
     programs = [described(p) for p in (ropewalk, folder / "calibrate/ropewalk-calibrate",
                                        folder / "validate/ropewalk-validate")]
-    return {"commands.md": commands(programs), "scene.md": scene(programs[0]),
+    return {"commands.md": commands(programs), "scene.md": scene(programs[0]), **scene_tables(programs[0]),
             "messages.md": messages(repository, programs, ropewalk.resolve()), "library.md": library(repository, tags)}

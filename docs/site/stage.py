@@ -22,14 +22,16 @@ repository = Path(__file__).resolve().parents[2]
 beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.md", "validate/README.md",
                "mdem/lammps/README.md", "data/**/README.md"]
 contents = [
-    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/twist-to-failure", "tutorials/phase-diagram", "tutorials/cluster", "guide", "gallery"]),
+    ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/twist-to-failure", "tutorials/phase-diagram", "tutorials/python",
+               "tutorials/cluster", "guide", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/plan", "how-to/campaign", "how-to/*"]),
-    ("Reference", ["reference/commands", "reference/scene", "outputs", "limits", "faults", "reference/messages",
+    ("Reference", ["reference/commands", "reference/scene", "reference/tables/*", "outputs", "limits", "faults", "reference/messages",
                    "reference/library", "glossary"]),
     ("The model", ["theory", "calibrate/README", "validate/README", "mdem/lammps/README", "performance"]),
     ("Results", ["data/scenes/README", "data/**"]),
     ("The project", ["README", "architecture", "contributing", "CHANGELOG", "THIRD_PARTY", "*"]),
 ]
+tables = Path("docs/tables.md")  # no page of its own: reference.py makes one of each of its sections
 pictures = {".svg", ".png"}
 font = Path("/usr/share/fonts/opentype/stix-word/STIXMath-Regular.otf")  # of formulas; Debian's fonts-stix
 link = re.compile(r"(!?)\[([^\]]*)\]\(([^()\s]+)\)")
@@ -40,6 +42,8 @@ def place_of(path):
     """Where a file of the repository is laid on the site."""
     if path == Path("docs/README.md"):
         return Path("index.md")
+    if path == tables:
+        return Path("reference/scene.md")
     return path.relative_to("docs") if path.parts[0] == "docs" else path
 
 
@@ -107,14 +111,21 @@ class Stage:
         self.copy(file, Path("extra") / place_of(file))
         return f'<a href="{os.path.relpath(place_of(file), here)}">{words}</a>'
 
-    def page(self, page):
-        text = self.with_charts(page, (repository / page).read_text())
+    def page(self, page, text=None):
+        """A page of the repository as the site has it; `text` stands in the place of what is in its file."""
+        text = self.with_charts(page, (repository / page).read_text() if text is None else text)
         text = re.sub(r"^( *)```math\n(.*?)^\1```$", r"\1$$\n\2\1$$", text, flags=re.S | re.M)
         lines = []
         for line, is_text in lines_outside_code(text):
             lines.append(link.sub(lambda m: self.new_link(page, m), line) if is_text else line)
         text = "\n".join(lines)
         return doi.sub(r"[DOI\1\2](https://doi.org/\2)", text)
+
+    def table_page(self, text):
+        """A page of reference/tables, whose links are those of a section of docs/tables.md: one folder higher, and to its
+        other sections."""
+        text = re.sub(r"(\]\(|<a href=\")(?![a-z]+:|#)", r"\1../", self.page(tables, text))
+        return re.sub(r"\]\(#(\w+)\)", r"](\1.md)", text)
 
     def with_charts(self, page, text):
         def draw(match):
@@ -148,13 +159,17 @@ def main():
     (output / "extra").mkdir(parents=True)
     stage = Stage(output)
     made = reference.pages(repository, build, tags)
-    places = [place_of(p) for p in stage.pages] + [Path("reference") / name for name in made]
+    places = [place_of(p) for p in stage.pages if p != tables] + [Path("reference") / name for name in made]
     for page in stage.pages:
+        if page == tables:
+            continue
         text = stage.page(page)
         if page == Path("docs/README.md"):
             text += stage.toctrees(places)
         stage.write(place_of(page), text)
     for name, text in made.items():
+        if name.startswith("tables/"):
+            text = stage.table_page(text)
         stage.write(Path("reference") / name, text)
     for file in (Path(__file__).with_name("conf.py"), Path(__file__).with_name("site.css"), font):
         shutil.copyfile(file, output / file.name)

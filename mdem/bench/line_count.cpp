@@ -67,13 +67,13 @@ void RadialCount::add(const RadialCount& other, double share) {
 }
 
 int radial_lanes(Interaction::Precision precision) {
-  const int bytes = vector_unit_in_use == VectorUnit::v4 ? 64 : vector_unit_in_use == VectorUnit::v3 ? 32 : 16;
+  const int bytes = vector_unit_in_use() == VectorUnit::v4 ? 64 : vector_unit_in_use() == VectorUnit::v3 ? 32 : 16;
   return bytes / (precision == Interaction::Precision::mixed ? 4 : 8);
 }
 
 int radial_operations(Interaction::Precision precision) {
   const int polynomial = precision == Interaction::Precision::full ? FullTable::operations
-                         : vector_unit_in_use == VectorUnit::v4    ? MixedTable::operations
+                         : vector_unit_in_use() == VectorUnit::v4  ? MixedTable::operations
                                                                    : decltype(MixedTable::pieces)::operations;
   return 3 + polynomial + 3;
 }

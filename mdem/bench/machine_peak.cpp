@@ -82,10 +82,12 @@ double best_rate(int trials, const Work& work) {
 template <class T>
 double arithmetic_peak(int threads) {
   constexpr std::size_t rounds = 500000;  // takes some ms
+  const VectorUnit unit = vector_unit_in_use();
   return best_rate(6, [&] {
     double operations = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : operations)
     {
+      use_vector_unit(unit);
       T out[64 / sizeof(T)];
       const auto done = static_cast<double>(multiply_adds(rounds, T{0.5}, out));
       operations += out[0] > 0 ? done : 0.0;  // uses the result, so that the compiler keeps the operations
@@ -104,13 +106,16 @@ double transfer_peak(int threads) {
   };
   const auto a = array(), b = array(), c = array();
   if (!a || !b || !c) throw std::bad_alloc();
-    // Memory is placed near the thread that writes to it first.
+  const VectorUnit unit = vector_unit_in_use();
+  // Memory is placed near the thread that writes to it first.
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::ptrdiff_t i = 0; i < pieces * piece; ++i) a[i] = 1, b[i] = 2, c[i] = 3;
   return best_rate(4, [&] {
 #pragma omp parallel for schedule(static) num_threads(threads)
-    for (std::ptrdiff_t k = 0; k < pieces; ++k)
+    for (std::ptrdiff_t k = 0; k < pieces; ++k) {
+      use_vector_unit(unit);
       triad(a.get() + k * piece, b.get() + k * piece, c.get() + k * piece, static_cast<std::size_t>(piece));
+    }
     return 24.0 * static_cast<double>(pieces * piece);
   });
 }

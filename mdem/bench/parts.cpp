@@ -1,7 +1,5 @@
 #include "bench/parts.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -9,6 +7,7 @@
 #include "io/clocks.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/part_of_scene.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -101,7 +100,7 @@ constexpr int rounds = 15;
 
 std::vector<std::vector<PartCost>> cost_of_parts(const Topology& topology, const Interaction& interaction,
                                                  const State& state, int most, bool across_z) {
-  omp_set_num_threads(1);
+  use_threads(1);
   std::vector<std::vector<std::unique_ptr<Part>>> cuts;
   for (int n = 1; n <= most; n *= 2) {
     std::vector<int> all(static_cast<std::size_t>(topology.elements()));

@@ -10,6 +10,8 @@
 #include "io/clocks.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/dynamics/shorter_steps.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -45,10 +47,7 @@ StepTiming per_element_step(const StepTiming& a, const StepTiming& b, double sca
 
 constexpr int max_counted = 16000;  // elements
 
-}  // namespace
-
-StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after, long steps) {
-  Simulation simulation = start(scene, prepared);
+StepCost cost_in(Simulation& simulation, const Prepared& prepared, double after, long steps) {
   simulation.steps(std::llround(after / prepared.time_step), false);
   simulation.steps(std::max(5L, steps / 10), false);  // warm caches
   StepCost c;
@@ -68,7 +67,7 @@ StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after
   }
   const double n = prepared.topology.elements(), scale = 1e9 / (n * static_cast<double>(steps));
   c.each = per_element_step(before, timing(simulation, wall * scale, processor * scale), scale);
-  c.threads = omp_get_max_threads();
+  c.threads = threads_in_use();
   c.after = after;
   c.pairs = static_cast<double>(simulation.list().pairs()) / n;
   c.skin = simulation.list().skin;
@@ -77,6 +76,13 @@ StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after
   c.moved = step_bytes(simulation) / n;
   c.peak_bytes = peak_bytes();
   return c;
+}
+
+}  // namespace
+
+StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after, long steps) {
+  return with_shorter_steps(start(scene, prepared),
+                            [&](Simulation& simulation) { return cost_in(simulation, prepared, after, steps); });
 }
 
 double per(double sum, double count) { return count > 0 ? sum / count : 0.0; }

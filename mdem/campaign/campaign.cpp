@@ -10,9 +10,10 @@
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/log.hpp"
+#include "io/log_mean.hpp"
 #include "io/plain_text.hpp"
+#include "io/toml_text.hpp"
 #include "model/error.hpp"
-#include "observe/time_mean.hpp"
 #include "plan/scene_edit.hpp"
 #include "report/runs_page.hpp"
 #include "run/events_file.hpp"
@@ -50,35 +51,38 @@ std::string cells_of(const LogRow& row, const std::vector<std::size_t>& columns)
   return text;
 }
 
-// Means over the last rows, each with its error.
+// Means over the last rows, each with its error and its correlation time.
 std::string mean_cells(const std::vector<LogRow>& log, double mean_ps, const std::vector<std::size_t>& columns,
                        const std::string& point, std::vector<std::string>* short_of) {
-  const double from = log.back()["time_ps"] - mean_ps - 1e-9;
   constexpr int most_names = 5;
   std::string text, names;
   int without = 0;
   double needed = 0;  // ps
+  const std::size_t rows = rows_of_last(mean_ps, log);
   for (const std::size_t k : columns) {
     if (!has_mean(k)) {
       text += "," + number(log.back().values()[k]);
       continue;
     }
-    std::vector<double> values, times;
-    for (const LogRow& row : log)
-      if (row["time_ps"] >= from) values.push_back(row.values()[k]), times.push_back(row["time_ps"]);
-    const TimeMean mean = time_mean(values);
-    text += "," + number(mean.mean) + "," + number(mean.error);
-    if (!std::isfinite(mean.mean) || std::isfinite(mean.error)) continue;
+    const LogMean mean = mean_of_last(rows, log, [k](const LogRow& row) { return row.values()[k]; });
+    text += "," + number(mean.value) + "," + number(mean.error) + "," + number(mean.correlation_ps);
+    if (!std::isfinite(mean.value) || std::isfinite(mean.error)) continue;
     if (++without <= most_names) names += fmt::format("{}{}", names.empty() ? "" : ", ", observables()[k].name);
-    if (times.size() > 1)
-      needed = std::max(needed,
-                        mean.rows_needed * (times.back() - times.front()) / static_cast<double>(times.size() - 1));
+    needed = std::max(needed, mean.needed_ps);
   }
   if (without > most_names) names += fmt::format(" and {} more columns", without - most_names);
   if (short_of && without > 0)
     short_of->push_back(fmt::format("{}: {:.3g} ps are too short for an error of {}{}", point, mean_ps, names,
                                     needed > 0 ? fmt::format("; about {:.2g} ps would do", needed) : ""));
   return text;
+}
+
+// Of its points, whatever varies. What one scene alone is to give does not hold for them.
+bool expects_something(const Sweep& sweep) {
+  const toml::table scene = parsed_toml(sweep.scene_text, sweep.scene_path);
+  const toml::array* expected = scene["expect"].as_array();
+  return expected && std::any_of(expected->begin(), expected->end(),
+                                 [](const toml::node& one) { return !one.as_table()->contains("scene_hash"); });
 }
 
 // Killed before its sweep.toml was written.
@@ -120,6 +124,12 @@ PointProgress progress_of(const RunDirectory& dir) {
     p.stage = Stage::ended;
   if (p.stage == Stage::begun) p.status = holder_of(dir.path).empty() ? "interrupted" : "running";
   return p;
+}
+
+std::vector<Judgement> judged(const RunDirectory& dir) {
+  if (progress_of(dir).status != "finished" || read_file(dir.scene()).find("expect") == std::string::npos)
+    return {};
+  return judge(read_run_scene(dir).expected, dir);
 }
 
 CampaignDirectory campaign_directory(const std::string& sweep_file, const std::string& out) {
@@ -206,11 +216,14 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
   std::size_t cells = 0;
   for (const std::size_t k : columns) {
     text += fmt::format(",{}", observables()[k].name);
-    if (means && has_mean(k)) text += fmt::format(",{}_error", observables()[k].name), ++cells;
+    if (means && has_mean(k))
+      text += fmt::format(",{0}_error,{0}_correlation_ps", observables()[k].name), cells += 2;
     ++cells;
   }
   const bool with_results = options.columns.empty() && !options.series;
   if (with_results) text += "," + column_names(result_columns());
+  const bool expects = with_results && expects_something(sweep);
+  if (expects) text += ",expected,missed";
   text += options.series ? "\n" : ",limits_passed\n";
   for (const SweepPoint& p : points) {
     const RunDirectory run = dir.point(p.name);
@@ -236,6 +249,10 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     if (with_results)
       text += "," + (log.empty() ? std::string(result_columns().size() - 1, ',')
                                  : result_cells(run_results(log, limits, tube_breaks(run.events()))));
+    if (expects) {
+      const std::vector<Judgement> all = judged(run);
+      text += all.empty() ? std::string(",,") : fmt::format(",{},{}", all.size(), missed(all));
+    }
     text += "," + csv_cell(passed_words(limits)) + "\n";
   }
   return text;

@@ -7,6 +7,7 @@
 
 #include "campaign/sweep_file.hpp"
 #include "io/manifest.hpp"
+#include "run/expectations.hpp"
 #include "run/run_directory.hpp"
 
 namespace ropewalk {
@@ -42,6 +43,9 @@ struct PointProgress {
 };
 PointProgress progress_of(const RunDirectory& dir);
 
+// What a finished run gave against the [[expect]] tables of its scene; empty: it has none, or has not finished.
+std::vector<Judgement> judged(const RunDirectory& dir);
+
 // Makes the directory with its copies, and holds it: together with other processes, alone with `force`. Throws
 // InputError where it is not that of a campaign, where another process holds it alone, and where a point or a
 // shared start in it was run with another scene, parameter set, state file or time of its shared start, unless
@@ -54,8 +58,8 @@ Sweep read_campaign(const CampaignDirectory& dir);
 
 // Chooses the rows of a log that the table shows.
 struct GatherOptions {
-  // Mean over the last rows of so much time, each with a column NAME_error (observe/time_mean.hpp); 0: the last
-  // row.
+  // Mean over the last rows of so much time, each with columns NAME_error and NAME_correlation_ps
+  // (io/log_mean.hpp); 0: the last row.
   double mean_ps = 0;
   bool series = false;               // every row of every log instead
   std::vector<std::string> columns;  // of the log; empty: all, and result_columns()
@@ -63,7 +67,8 @@ struct GatherOptions {
   std::vector<std::string>* short_of = nullptr;
 };
 // One line per point: its name, the values of the keys that vary, how it ended and its first limit, the
-// observables, what came of it, the limits passed. A point without rows has empty cells. Everything in it follows
+// observables, what came of it, the limits passed. A point without rows has empty cells. Where the scene expects
+// something, `expected` counts the [[expect]] tables, and `missed` those that do not hold. Everything in it follows
 // from the scenes alone: no times of the machine.
 std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const std::vector<SweepPoint>& points,
                          const GatherOptions& options);

@@ -7,17 +7,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "campaign/repeated_run.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
-#include "io/manifest.hpp"
 #include "io/parameters_toml.hpp"
-#include "io/removal.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
-#include "run/begin_run.hpp"
-#include "run/terminal_listener.hpp"
-#include "scene/kinds/state.hpp"
-#include "scene/scene_toml.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 namespace {
@@ -44,22 +40,6 @@ double contact_error(const ParameterSet& set, int tubes) {
   const double fit = well ? well->standard_error.value_or(0) / std::fabs(well->value) : 0;
   return std::hypot(fit, std::max(0.0, registry_deviation(set)) / std::sqrt(contacts_of(tubes)));
 }
-
-// The run whose numbers are varied has told the notes on its scene.
-class VariedRunListener : public TerminalListener {
- public:
-  VariedRunListener() : TerminalListener(true) {}
-  void tell_note(const std::string&) override {}
-};
-
-bool finished(const RunDirectory& dir, const std::string& parameters) {
-  return fs::exists(dir.manifest()) && fs::exists(dir.parameters(0)) &&
-         read_manifest(dir.manifest()).status == "finished" && read_file(dir.file("changed.toml")) == parameters;
-}
-
-}  // namespace
-
-namespace {
 
 class InputsOf {
  public:
@@ -103,9 +83,6 @@ class InputsOf {
       std::vector<std::string> paths;
       for (const std::string& key : keys)
         if (find_quantity(set, key)) paths.push_back(key + ".value");
-      // The force of the pull goes on from that of EA.
-      for (std::size_t row = 0; name == "EA" && set.pull && row < set.pull->force.size(); ++row)
-        paths.push_back(fmt::format("bond.pull.force.values.{}", row));
       add(name + of, folder + name, sigma, step_of(sigma), correlated, Of::set, k, paths);
     };
     std::string none;
@@ -199,10 +176,12 @@ std::string changed_text(std::string text, const VariedNumber& source, bool plus
 
 }  // namespace
 
+ErrorInputs inputs_with_errors(const Scene& scene, int tubes) { return InputsOf(scene, tubes).all(); }
+
 ErrorInputs error_inputs(const Scene& scene, int tubes) {
-  ErrorInputs out = InputsOf(scene, tubes).all();
+  ErrorInputs out = inputs_with_errors(scene, tubes);
   if (out.varied.empty())
-    throw InputError({scene.path, 0, "parameters"}, "has no number with a standard error",
+    throw InputError(place_in(scene, "parameters"), "has no number with a standard error",
                      "take a calibrated set, since the published one gives none, or write numbers of the scene as "
                      "{ value = 0.16, standard_error = 0.02 }");
   return out;
@@ -222,33 +201,18 @@ std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>&
 }
 
 int ErrorRuns::run(const VariedNumber& source, bool plus) const {
-  const RunDirectory dir{base_.path + "/errors/" + (plus ? source.error.plus : source.error.minus)};
   refuse_strange_files(base_);
-  const std::string text = changed_file(source, plus);
-  if (!again_ && fs::exists(dir.file("changed.toml")) && finished(dir, text)) return 0;
-  remove_run(dir, "--again");
-  fs::create_directories(base_.path + "/errors");
-  const TemporaryFolder folder;
-  const RunDirectory inputs{folder.path()};
-  write_file_atomically(inputs.scene(), source.of == InputNumber::Of::scene ? text : read_file(base_.scene()));
-  std::vector<std::string> sets;
-  for (std::size_t k = 0; k < scene_.sets.size(); ++k) {
-    const bool changed = source.of == InputNumber::Of::set && (source.index == k || source.index == all_sets);
-    sets.push_back(inputs.parameters(k));
-    write_file_atomically(sets.back(), changed ? changed_text(read_file(base_.parameters(k)), source, plus)
-                                               : read_file(base_.parameters(k)));
-  }
-  const std::vector<std::string> files = input_files(scene_);
-  for (std::size_t k = 0; k < files.size(); ++k)
-    write_file_atomically(inputs.friction(k),
-                          source.of == InputNumber::Of::file && source.index == k ? text : read_file(files[k]));
-  Scene scene = read_scene(inputs.scene(), sets);
-  if (scene.from_file()) scene.source = std::make_shared<StateSource>(base_.state(), base_.state_memory());
-  scene.run.time_step = time_step_;
-  scene.run.frames_every = 1e9;  // ps: the logs alone are compared
-  VariedRunListener listener;
-  const int code = tell_end(go_through(begin_run(scene, dir, {}, listener)));
-  write_file_atomically(dir.file("changed.toml"), text);
+  const std::string changed = changed_text(read_file(original(source)), source, plus),
+                    name = plus ? source.error.plus : source.error.minus;
+  RunInputs inputs = inputs_of(base_, scene_);
+  for (std::size_t k = 0; k < inputs.sets.size(); ++k)
+    if (source.of == InputNumber::Of::set && (source.index == k || source.index == all_sets))
+      inputs.sets[k] = changed_text(inputs.sets[k], source, plus);
+  if (source.of == InputNumber::Of::file) inputs.files.at(source.index) = changed;
+  inputs.scene = repeatable_scene(source.of == InputNumber::Of::scene ? changed : inputs.scene, scene_, prepared_);
+  const int code = repeat_run(base_, scene_, name, inputs, again_);
+  const std::string note = base_.path + "/errors/" + name + "/changed.toml";
+  if (code == 0 && !(fs::exists(note) && read_file(note) == changed)) write_file_atomically(note, changed);
   return code;
 }
 
@@ -262,10 +226,6 @@ std::string ErrorRuns::original(const VariedNumber& source) const {
       break;
   }
   return base_.scene();
-}
-
-std::string ErrorRuns::changed_file(const VariedNumber& source, bool plus) const {
-  return changed_text(read_file(original(source)), source, plus);
 }
 
 }  // namespace ropewalk

@@ -29,24 +29,25 @@ struct ErrorInputs {
 };
 // Throws InputError where no number has an error. `tubes`: in the scene.
 ErrorInputs error_inputs(const Scene& scene, int tubes);
+// The same, which may be none.
+ErrorInputs inputs_with_errors(const Scene& scene, int tubes);
 std::vector<std::vector<double>> correlation_of(const std::vector<VariedNumber>& sources, const Scene& scene);
 
 class ErrorRuns {
  public:
-  // time_step: of the run that is repeated, ps. again: finished runs too.
-  ErrorRuns(const RunDirectory& base, const Scene& scene, double time_step, bool again)
-      : base_(base), scene_(scene), time_step_(time_step), again_(again) {}
+  // `scene` and `prepared` of the run that is repeated. again: finished runs too.
+  ErrorRuns(const RunDirectory& base, const Scene& scene, const Prepared& prepared, bool again)
+      : base_(base), scene_(scene), prepared_(prepared), again_(again) {}
 
   // In its directory below `errors`, with the number raised (`plus`) or lowered. Returns the exit code of the run.
   int run(const VariedNumber& source, bool plus) const;
 
  private:
   std::string original(const VariedNumber& source) const;  // the file that has it
-  std::string changed_file(const VariedNumber& source, bool plus) const;
 
   RunDirectory base_;
   const Scene& scene_;
-  double time_step_;
+  const Prepared& prepared_;
   bool again_;
 };
 

@@ -139,6 +139,8 @@ ScatterChart diagram(const Sweep& sweep, const std::string& name, const std::vec
   return scatter;
 }
 
+std::string positive_cell(double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); }
+
 std::string off_theory(const PhasePoint& p) {
   const double off = p.by_bisection() / p.kinetic_theory() - 1;
   return std::isfinite(off) ? fmt::format("{:+.0f} %", 100 * off) : std::string("–");
@@ -194,32 +196,21 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
   html +=
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>tubes</th><th>length, "
       "nm</th><th>length/radius</th><th>by bisection</th>";
-  if (theory)
-    html +=
-        "<th>theory, in this time</th><th>deviation from theory</th><th>turns of the helix</th><th>theory, "
-        "infinite "
-        "waiting time</th><th>winding</th><th>measured growth rate / theory (number of runs)</th><th>glued "
-        "tubes</th>";
+  if (theory) html += "<th>theory, in this time</th><th>deviation from theory</th>";
   html += "</tr></thead><tbody>\n";
   for (const PhasePoint& p : points) {
-    const auto number = [](double v) { return v > 0 ? fmt::format("{:.4g}", v) : std::string("–"); };
     html += fmt::format(
         "<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td>", escape_markup(p.name), p.tubes,
-        number(p.length), number(p.radius > 0 ? p.length / p.radius : 0),
+        positive_cell(p.length), positive_cell(p.radius > 0 ? p.length / p.radius : 0),
         escape_markup((std::isfinite(p.by_bisection()) ? measured_text(p.by_bisection(), p.bisection_error())
                        : p.begun()                     ? "not in the range"
                                                        : "not run yet") +
                       (p.remarks().empty() ? "" : "; " + p.remarks())));
-    if (theory)
-      html += fmt::format("<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
-                          number(p.kinetic_theory()), off_theory(p), number(p.theory_windings()),
-                          number(p.static_theory()), number(p.winding()),
-                          p.rates() > 0 ? fmt::format("{:.2f} ({})", p.rate_over_theory(), p.rates()) : "–",
-                          number(p.glued_theory()));
+    if (theory) html += fmt::format("<td>{}</td><td>{}</td>", positive_cell(p.kinetic_theory()), off_theory(p));
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
-  if (theory)
+  if (theory) {
     html += paragraph(escape_markup(
         "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
         "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
@@ -231,6 +222,19 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
         "that stays packed. The turns of the helix are those of the one that grows fastest there. Glued tubes "
         "would need EI + "
         "EA<rho^2>/2 in place of EI."));
+    html +=
+        "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>infinite waiting "
+        "time</th><th>glued "
+        "tubes</th><th>turns of the helix</th><th>winding</th><th>growth rate / theory "
+        "(runs)</th></tr></thead><tbody>\n";
+    for (const PhasePoint& p : points) {
+      html += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                          escape_markup(p.name), positive_cell(p.static_theory()), positive_cell(p.glued_theory()),
+                          positive_cell(p.theory_windings()), positive_cell(p.winding()),
+                          p.rates() > 0 ? fmt::format("{:.2f} ({})", p.rate_over_theory(), p.rates()) : "–");
+    }
+    html += "</tbody></table></div>\n";
+  }
   for (const auto& [name, some] : diagrams_of(sweep, points)) {
     const std::string svg = scatter_svg(diagram(sweep, name, some));
     if (svg.empty()) continue;
@@ -248,9 +252,11 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
             paragraph(
                 "The last state of the runs next to each threshold. Each run has a report of its own in the "
                 "directory of its point.");
+    html += "<div class=\"pair\">\n";
     for (const StatePicture& s : states)
       html += "<figure><img alt=\"" + escape_markup(s.words) + "\" src=\"data:image/svg+xml;base64," +
               base64(s.svg) + "\">" + figures.caption(escape_markup(s.words + ".")) + "</figure>\n";
+    html += "</div>\n";
   }
   return html + "</main>\n</body>\n</html>\n";
 }

@@ -11,7 +11,7 @@
 
 #include "campaign/point_runs.hpp"
 #include "io/clocks.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/manifest.hpp"
 #include "io/plain_text.hpp"
@@ -119,7 +119,7 @@ int PilotRuns::work(const std::string& run, const PilotTask& task) const {
       write_file_atomically(run + ".seconds", fmt::format("{:.6g}", processor_seconds()));
       return code;
     } catch (const InputError& e) {
-      const int code = tell_failure("ropewalk", e);
+      const int code = report_error("ropewalk", e);
       return listener.scene_is_good ? broken_off : code;
     }
   });

@@ -10,12 +10,12 @@
 #include <filesystem>
 
 #include "campaign/campaign.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "run/begin_run.hpp"
 #include "run/terminal_listener.hpp"
-#include "run/threads.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -42,6 +42,11 @@ void remove_hardly_begun(const RunDirectory& dir) {
   remove_run(dir, "");
 }
 
+int code_of(const RunResult& r) {
+  const int code = tell_end(r);
+  return code == not_as_expected ? 0 : code;
+}
+
 int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit,
              RunListener& listener) {
   use_threads(1);
@@ -49,7 +54,7 @@ int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLim
   asked.until_ps = until_ps;
   asked.on_limit = on_limit;
   asked.may_refine = false;
-  return tell_end(go_through(begin_run(scene, dir, asked, listener)));
+  return code_of(go_through(begin_run(scene, dir, asked, listener)));
 }
 
 int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit) {
@@ -60,7 +65,7 @@ int run_or_resume(const RunDirectory& dir, const Scene& scene, double until_ps, 
     asked.until_ps = until_ps;
     asked.on_limit = on_limit;
     asked.may_refine = false;
-    return tell_end(go_through(resume_run(dir, asked, terminal)));
+    return code_of(go_through(resume_run(dir, asked, terminal)));
   }
   remove_hardly_begun(dir);
   return run_anew(dir, scene, until_ps, on_limit, terminal);
@@ -75,7 +80,7 @@ int in_a_process(const std::string& messages, bool wait, const std::function<int
     setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
     return work();
   } catch (const std::exception& e) {
-    return tell_failure("ropewalk", e);
+    return report_error("ropewalk", e);
   }
 }
 

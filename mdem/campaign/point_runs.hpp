@@ -6,6 +6,7 @@
 
 #include "io/stop_signals.hpp"
 #include "run/limit_watch.hpp"
+#include "run/run.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_listener.hpp"
 
@@ -16,6 +17,9 @@ inline constexpr int point_busy = 75;  // exit code of a process that found its 
 // Removes a run that was killed before its first checkpoint. Throws InputError where the directory holds anything
 // else: more than the first row of a log, or a file that is not of a run.
 void remove_hardly_begun(const RunDirectory& dir);
+// The exit code of a run of a campaign, which says how it ended. It is 0 also where the run is not as its scene
+// expects: the campaign counts that by itself (judged()).
+int code_of(const RunResult& result);
 // Starts a run on one thread in a directory that is not there. Negative `until_ps`: to the scene's end.
 int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit, RunListener& listener);
 // A run that was begun goes on, another one is started.

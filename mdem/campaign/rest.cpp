@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/log.hpp"
+#include "io/run_results.hpp"
 #include "model/error.hpp"
 #include "observe/growth.hpp"
 
@@ -61,9 +62,10 @@ std::string RestSide::branch() const {
   return std::fabs(Q) < defects ? "compact" : "compact with defects";
 }
 
-RestSide rest_side(const std::vector<LogRow>& log, double start) {
+RestSide rest_side(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits, double start) {
   RestSide out;
   out.start = start;
+  out.limits = limits;
   out.time = log.back()["time_ps"];
   std::vector<double> all_times, all_twists, all_betas, times, twists;
   out.least = std::numeric_limits<double>::infinity();
@@ -192,14 +194,25 @@ RestVerdict rest_verdict(const std::array<RestSide, 2>& s, double tolerance) {
   return out;
 }
 
+std::vector<std::string> beyond_of(const std::array<RestSide, 2>& sides) {
+  std::vector<std::string> out;
+  for (const RestSide& s : sides)
+    if (const std::string beyond = beyond_words(s.limits); !beyond.empty())
+      out.push_back(fmt::format("The run from {} is {}: its state of rest is not that of real tubes.",
+                                &s == &sides[0] ? "below" : "above", beyond));
+  return out;
+}
+
 std::string rest_csv(const std::array<RestSide, 2>& sides) {
   std::string text =
       "from,start_deg_per_nm,time_ps,geometric_twist_deg,drift_deg_per_ps,beta_deg,least_beta_deg,most_beta_deg,Q,"
-      "void_area_nm2,branch,limit_deg,limit_drift_deg,limit_statistics_deg,approach_ps\n";
+      "void_area_nm2,branch,limit_deg,limit_drift_deg,limit_statistics_deg,approach_ps," +
+      column_names(limit_columns()) + "\n";
   for (const RestSide& s : sides)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", &s == &sides[0] ? "below" : "above",
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", &s == &sides[0] ? "below" : "above",
                         s.start, s.time, s.twist, s.drift, s.beta, s.least, s.most, s.Q, s.voids, s.branch(),
-                        s.to_twist.limit, s.to_twist.drift, s.to_twist.statistics, s.to_twist.time);
+                        s.to_twist.limit, s.to_twist.drift, s.to_twist.statistics, s.to_twist.time,
+                        limit_cells(s.limits));
   return text;
 }
 
@@ -230,7 +243,8 @@ std::string rest_json(const std::array<RestSide, 2>& sides, const RestVerdict& v
                {{"compact_deg", theory.compact * length / units::degree},
                 {"open_deg", theory.open * length / units::degree}}},
               {"sides", Json::array()}};
-  for (const RestSide& s : sides)
+  for (const RestSide& s : sides) {
+    const LimitRecord* first = first_limit(s.limits);
     out["sides"].push_back({{"from", &s == &sides[0] ? "below" : "above"},
                             {"start_deg_per_nm", s.start},
                             {"time_ps", s.time},
@@ -241,7 +255,10 @@ std::string rest_json(const std::array<RestSide, 2>& sides, const RestVerdict& v
                             {"approach_ps", number(s.to_twist.time)},
                             {"beta_deg", number(s.beta)},
                             {"Q", number(s.Q)},
-                            {"branch", s.branch()}});
+                            {"branch", s.branch()},
+                            {"first_limit", first ? Json(first->key) : Json()},
+                            {"first_limit_ps", first ? number(first->passed_at_ps) : Json()}});
+  }
   return out.dump(2) + "\n";
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "campaign/campaign.hpp"
+#include "io/limits_file.hpp"
 #include "observe/approach.hpp"
 #include "plan/rest_theory.hpp"
 
@@ -31,9 +32,10 @@ struct RestSide {
   double time = 0;                       // ps, at the end
   Approach to_twist, to_beta;            // deg: where both are going
   RopeShape shape = RopeShape::straight;
-  std::string branch() const;  // "compact", "compact with defects", "open (cage)"
+  std::vector<LimitRecord> limits = {};  // that the run watched
+  std::string branch() const;            // "compact", "compact with defects", "open (cage)"
 };
-RestSide rest_side(const std::vector<LogRow>& log, double start);
+RestSide rest_side(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits, double start);
 
 // A value with its error, whose square is the sum of those of its parts.
 struct RestValue {
@@ -60,6 +62,9 @@ const char* name_of(RestVerdict::Kind kind);
 
 // A sentence: sources of error that a verdict leaves out.
 std::string left_out_of_rest();
+
+// A sentence for each side that is beyond a limit of the model; none: no line.
+std::vector<std::string> beyond_of(const std::array<RestSide, 2>& sides);
 
 // A row for each side, and what the verdict says.
 std::string rest_csv(const std::array<RestSide, 2>& sides);

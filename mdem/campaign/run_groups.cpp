@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "io/numeric_errors.hpp"
 #include "model/error.hpp"
 #include "report/tensile.hpp"
 #include "report/torsion.hpp"
@@ -81,7 +82,7 @@ std::vector<RunGroup> groups_in(const std::string& path) {
   return {{last_part_of(path), {}, {}, {RunDirectory{path}}}};
 }
 
-RunCurve curve_of(const RunGroup& group, bool pictured) {
+RunCurve curve_of(const RunGroup& group, bool pictured, double mean_ps) {
   std::vector<std::vector<LogRow>> logs;
   for (const RunDirectory& run : group.runs) {
     refuse_strange_files(run);
@@ -90,6 +91,13 @@ RunCurve curve_of(const RunGroup& group, bool pictured) {
   }
   if (logs.empty()) throw InputError({group.runs.front().log(), 0, ""}, "has no rows", "run the scene further");
   RunCurve curve = mean_of(group.name, logs);
+  if (mean_ps > 0) {
+    if (std::any_of(logs.begin(), logs.end(), stands_still))
+      throw InputError({group.runs.front().log(), 0, "--mean"},
+                       "is the log of a relaxation: its rows are no times to average over", "leave --mean out");
+    curve.means = means_of(logs, mean_ps);
+  }
+  if (group.runs.size() == 1) curve.error = rows_of_errors(group.runs.front().path, curve.log);
   if (curve.log.empty())
     throw InputError({group.runs.front().log(), 0, ""}, "has no row at the same time as the others of its kind",
                      "compare runs of one log interval");

@@ -23,8 +23,9 @@ std::vector<RunGroup> groups_in(const std::string& directory);
 // The name of a directory.
 std::string last_part_of(const std::string& path);
 
-// The mean of its logs; `pictured`: with the last frame of the first run.
-RunCurve curve_of(const RunGroup& group, bool pictured);
+// The mean of its logs; `pictured`: with the last frame of the first run. mean_ps: with means over so much time;
+// 0: without. Throws InputError where a log has no times.
+RunCurve curve_of(const RunGroup& group, bool pictured, double mean_ps = 0);
 
 // The tensile test, or the test in torsion, of each of its runs. Throws InputError for a run without a tension, or
 // without a torque.

@@ -1,7 +1,6 @@
 #include "campaign/sweep_file.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "io/log.hpp"
 #include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
+#include "io/toml_text.hpp"
 #include "model/error.hpp"
 #include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
@@ -291,9 +291,9 @@ void write_scene(const Sweep& s, SweepPoint& p) {
   const auto set = [&](std::size_t k) {
     try {
       p.text = with_value(p.text, axes[k]->key, p.values[k], s.scene_path);
-    } catch (const toml::parse_error& e) {
+    } catch (const TomlError& e) {
       throw InputError({s.path, axes[k]->line, axes[k]->key},
-                       fmt::format("cannot be set in {}: {}", s.scene_path, std::string(e.description())),
+                       fmt::format("cannot be set in {}: {}", s.scene_path, e.description),
                        "write the key as it would stand in the scene");
     }
   };
@@ -403,7 +403,7 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
     column_of_log(s.threshold->column, {s.path, 0, "threshold.column"});
   }
   top.finish();
-  const toml::table file = toml::parse(text, path);
+  const toml::table file = parsed_toml(text, path);
   s.axes = axes_in(file["vary"].as_table(), path);
   s.branch_axes = axes_in(file["branch"]["vary"].as_table(), path);
   if (top.has("branch") && s.branch_axes.empty())
@@ -472,19 +472,30 @@ std::vector<SweepPoint> starts_of(const Sweep& s, const std::vector<SweepPoint>&
   return starts;
 }
 
+bool seeds_differ(Scene& one, Scene& other) {
+  const bool bath = one.bath() && one.bath()->temperature.largest() > 0;
+  if (bath && (one.bath()->seed != other.bath()->seed || one.start.stream != other.start.stream)) return true;
+  // The strengths of tubes scatter by the seed of the scene, and so do the places of links.
+  const toml::table top = parsed_toml(one.text, one.path);
+  if (const toml::array* links = top["links"].as_array())
+    for (const toml::node& node : *links)
+      if (const toml::table& t = *node.as_table();
+          !t.contains("seed") && (t.contains("per_nm") || t.contains("forming_per_nm_ps")))
+        return true;
+  if (top["failure"]["strain_deviation"].value_or(0.0) > 0 && !top["failure"]["seed"]) return true;
+  const State a = prepare(one).state, b = prepare(other).state;
+  for (const auto of : {&State::position, &State::velocity})
+    if ((a.*of).x != (b.*of).x || (a.*of).y != (b.*of).y || (a.*of).z != (b.*of).z) return true;
+  return false;
+}
+
 std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<SweepPoint>& points) {
   if (sweep.replicates < 2) return "";
   for (const Replicates& r : replicates_of(sweep, points)) {
     if (r.points.size() < 2) continue;
     Scene one = scene_of(sweep, r.points[0]), other = scene_of(sweep, r.points[1]);
+    if (seeds_differ(one, other)) return "";
     const bool bath = one.bath() && one.bath()->temperature.largest() > 0;
-    if (bath && one.bath()->seed != other.bath()->seed) return "";
-    // The strengths of tubes scatter by the seed of the scene.
-    const toml::table top = toml::parse(one.text);
-    if (top["failure"]["strain_deviation"].value_or(0.0) > 0 && !top["failure"]["seed"]) return "";
-    const State a = prepare(one).state, b = prepare(other).state;
-    for (const auto of : {&State::position, &State::velocity})
-      if ((a.*of).x != (b.*of).x || (a.*of).y != (b.*of).y || (a.*of).z != (b.*of).z) return "";
     return bath ? "replicates vary start.seed, and all have the noise of the thermostat.seed that is typed: take "
                   "that key away"
                 : "replicates are one and the same run, since nothing in the scene is random: add "
@@ -506,11 +517,14 @@ std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<Swee
       if (sweep.varies(keys[k]))
         r.name += fmt::format("{}{} = {}", r.name.empty() ? "" : ", ", leaf_of(keys[k]), p.values[k]);
     }
-    if (r.name.empty()) r.name = p.name;
     const auto [entry, added] = at.emplace(r.values, out.size());
     if (added) out.push_back(std::move(r));
     out[entry->second].points.push_back(p);
   }
+  // Where nothing but the seed varies, the one group has the name of what it holds.
+  for (Replicates& r : out)
+    if (r.name.empty())
+      r.name = r.points.size() == 1 ? r.points.front().name : fmt::format("{} seeds", r.points.size());
   return out;
 }
 

@@ -89,12 +89,16 @@ std::vector<SweepPoint> starts_of(const Sweep& sweep, const std::vector<SweepPoi
 
 // Points that differ in their seed alone.
 struct Replicates {
-  std::string name;                 // "tubes = 7, moment_nN_nm = 35": the keys that have more than one value
+  // "tubes = 7, moment_nN_nm = 35": the keys that have more than one value. Without such keys, "4 seeds".
+  std::string name;
   std::vector<std::string> values;  // of the keys without the seed
   std::vector<SweepPoint> points;
 };
 // In the order of the points.
 std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
+// Whether two scenes that differ in their seeds move apart: by random places, velocities or strengths at the start,
+// or by random numbers on the way. Both are prepared.
+bool seeds_differ(Scene& one, Scene& other);
 // Why replicates would be one and the same run, and their scatter no error; empty: they differ. Two seeds of the
 // first point are built.
 std::string why_replicates_are_equal(const Sweep& sweep, const std::vector<SweepPoint>& points);

@@ -210,6 +210,7 @@ std::string ThresholdSearch::words_of(const SweepPoint& p) const {
 // For each point with a threshold the runs below and above it, where they are in the directory.
 std::vector<StatePicture> ThresholdSearch::states() const {
   std::vector<StatePicture> all;
+  std::vector<PlateInput> plates;
   for (const SweepPoint& p : points_) {
     const Threshold t = threshold_of(dir_, sweep_, p, {});
     if (t.outside) continue;
@@ -221,12 +222,22 @@ std::vector<StatePicture> ThresholdSearch::states() const {
       const double last = read_log(run.log()).back()["time_ps"];
       PlateOptions options;
       options.at = {last};
+      options.width = 520;  // letters can be read on a phone
       options.highest = 140;
+      plates.push_back(plate_of(run, options));
       all.push_back(
           {fmt::format("{}, {:g}: {}, after {:.4g} ps", p.name, value,
                        trial->shape.empty() ? (trial->passed ? "passed" : "did not pass") : trial->shape, last),
-           run_plate(run, options)});
+           ""});
     }
+  }
+  // One scale of colours for all.
+  double least = 0, most = 0;
+  for (const PlateInput& plate : plates)
+    least = std::min(least, plate.camera.least), most = std::max(most, plate.camera.most);
+  for (std::size_t k = 0; k < plates.size(); ++k) {
+    if (plates[k].camera.coloured()) plates[k].camera.least = least, plates[k].camera.most = most;
+    all[k].svg = plate_svg(plates[k]);
   }
   return all;
 }

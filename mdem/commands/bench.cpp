@@ -7,9 +7,9 @@
 #include "bench/step_cost.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
-#include "run/threads.hpp"
 #include "run/use_device.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

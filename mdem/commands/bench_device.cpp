@@ -8,10 +8,10 @@
 #include "bench/bench_scenes.hpp"
 #include "commands/commands.hpp"
 #include "model/error.hpp"
-#include "run/threads.hpp"
 #include "run/use_device.hpp"
 #include "scene/prepare.hpp"
 #include "sim/device/device_stepper.hpp"
+#include "sim/threads/threads.hpp"
 #include "sim/threads/vector_unit.hpp"
 
 namespace ropewalk {
@@ -39,7 +39,7 @@ int bench_device(const BenchArguments& a) {
     out["device"] = device.name();
     out["elements"] = prepared.topology.elements();
     out["moved_by_the_host"] = device.hosted().size();
-    out["threads"] = omp_get_max_threads();
+    out["threads"] = threads_in_use();
     out["steps"] = a.steps;
     out["after_ps"] = after;
     out["time_step_fs"] = prepared.time_step / units::fs;
@@ -53,8 +53,8 @@ int bench_device(const BenchArguments& a) {
   fmt::print("{:.0f} elements on \"{}\", {} of them moved by the host, {} steps of {:.3g} fs\n", n, device.name(),
              device.hosted().size(), a.steps, prepared.time_step / units::fs);
   fmt::print("{:9.2f} ns per element-step, {:.2f} of them for {} lists, which {} thread{} of the host made\n",
-             seconds * each, of_lists * each, simulation.list().builds() - lists, omp_get_max_threads(),
-             omp_get_max_threads() == 1 ? "" : "s");
+             seconds * each, of_lists * each, simulation.list().builds() - lists, threads_in_use(),
+             threads_in_use() == 1 ? "" : "s");
   fmt::print("{:9.3f} ms a step; {:.0f} bytes per element on the device, about\n",
              seconds * 1e3 / static_cast<double>(a.steps), static_cast<double>(device.bytes()) / n);
   fmt::print("{:9.2f} s of wall time per simulated ns\n",

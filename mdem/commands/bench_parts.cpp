@@ -8,6 +8,7 @@
 #include "bench/parts.hpp"
 #include "commands/commands.hpp"
 #include "scene/prepare.hpp"
+#include "sim/dynamics/shorter_steps.hpp"
 
 namespace ropewalk {
 namespace {
@@ -35,10 +36,12 @@ PartsRow row_of(const std::vector<PartCost>& parts) {
 int bench_parts(const BenchArguments& a) {
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);
-  Simulation simulation = start(scene, prepared);
-  simulation.steps(a.steps, false);  // a state in motion
-  const auto cuts = cost_of_parts(prepared.topology, prepared.interaction, simulation.state(), a.parts,
-                                  scene.source->is_parallel());
+  const State in_motion = with_shorter_steps(start(scene, prepared), [&](Simulation& simulation) {
+    simulation.steps(a.steps, false);
+    return simulation.state();
+  });
+  const auto cuts =
+      cost_of_parts(prepared.topology, prepared.interaction, in_motion, a.parts, scene.source->is_parallel());
   const ElementCost each = fit(cuts);
   const double whole = row_of(cuts.front()).seconds;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();

@@ -12,13 +12,14 @@
 #include "run/moving_scene.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_files.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/dynamics/shorter_steps.hpp"
 
 namespace ropewalk {
 namespace {
@@ -78,6 +79,15 @@ void say_sizes(const Scene& scene, const Prepared& p) {
              10 + memory_needed(elements) / 1e6, files / 1e6, frames);
 }
 
+// Expectations that were written for another scene than this.
+void say_not_judged(const Scene& scene) {
+  for (const Expectation& e : scene.expected)
+    if (e.of_other_scene)
+      fmt::print(
+          "not judged: {} {:.6g} ± {:.2g}, since the scene has changed: its scene_hash is \"{}\", and was \"{}\"\n",
+          e.column, e.value, e.tolerance, what_is_run_hash(scene.text), e.scene_hash);
+}
+
 // A run against the [[expect]] tables of its scene.
 int check_run(const RunDirectory& run) {
   Scene scene = read_run_scene(run);
@@ -92,6 +102,7 @@ int check_run(const RunDirectory& run) {
                      fmt::format("is a run that is {} at {:.4g} ps, and is judged at its end", m.status, reached),
                      "go on with it: ropewalk resume " + run.path);
   const std::vector<Judgement> all = judge(scene.expected, run);
+  say_not_judged(scene);
   for (const Judgement& j : all) fmt::print("{}\n", j.words);
   return missed(all) > 0 ? not_as_expected : 0;
 }
@@ -118,8 +129,11 @@ int check_command(const std::string& path) {
   if (const auto turn = quasi_static(scene, p)) fmt::print("note: {}\n", words_of(*turn));
   say_limits(scene, p);
   for (const Expectation& e : scene.expected)
-    fmt::print("expected: {} {:.6g} ± {:.2g} {}\n", e.column, e.value, e.tolerance,
-               e.at ? fmt::format("at {:.6g} ps", *e.at) : "at the end");
+    if (!e.of_other_scene)
+      fmt::print("expected: {} {:.6g} ± {:.2g} {}\n", e.column, e.value, e.tolerance,
+                 e.at ? fmt::format("at {:.6g} ps", *e.at) : "at the end");
+  say_not_judged(scene);
+  if (!scene.expected.empty()) fmt::print("scene_hash \"{}\"\n", what_is_run_hash(scene.text));
   fmt::print(
       "time step {:.4g} fs; stability limit {:.4g} fs (chain {:.3g}, contact {:.3g} rad/ps, damping {:.3g} 1/ps)\n",
       p.time_step / units::fs, p.limit.limit / units::fs, p.limit.chain_frequency, p.limit.contact_frequency,
@@ -134,9 +148,11 @@ int check_command(const std::string& path) {
     return 0;
   }
   constexpr long sample = 20;
-  const double began = steady_seconds();
-  simulation.steps(sample);
-  const double each = seconds_since(began) / sample;
+  const double each = with_shorter_steps(simulation, [](Simulation& s) {
+    const double began = steady_seconds();
+    s.steps(sample);
+    return seconds_since(began) / sample;
+  });
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
   say_sizes(scene, p);

@@ -21,6 +21,7 @@ struct RunArguments {
   std::string wall_time;          // see seconds_of_wall_time(); empty: any
   std::string instructions;       // empty: the machine's best
   std::string device;             // see RunSettings
+  std::string slurm;              // write a job of SLURM to this file instead; empty: run
   bool force = false;             // overwrite an earlier run
   bool quiet = false;
 };
@@ -72,6 +73,7 @@ struct PictureArguments {
   std::string from = "side";        // or "x", "y", "z", "AZIMUTH,ELEVATION"
   std::vector<std::string> curves;  // "twist_eV+bend_eV" is one chart
   std::string x;                    // column over which they are drawn; empty: time
+  std::string colour;               // a word of colour_words(); empty: bending moment
   bool sections = false;
   double width = 1040, highest = 200;  // pixels, of the figure and of each state
   double zoom = 2;                     // of a PNG
@@ -86,6 +88,7 @@ struct ViewArguments {
   double megabytes = 15;      // of the page, at most
   std::string movie;          // .webm or .mp4 to write instead
   std::string from = "side";  // of the movie: as of PictureArguments
+  std::string colour;         // of the movie: as of PictureArguments
   double fps = 15;            // of the movie
   int width = 1280;           // pixels, of the movie
   bool force = false;
@@ -119,7 +122,9 @@ int modes_command(const ModesArguments& arguments);
 
 struct ErrorsArguments {
   std::string dir;
-  int jobs = 0;  // runs at a time; 0: one for each core
+  bool numerics = false;  // with elements, time step, rate and other starts
+  double mean_ps = 0;     // numerics: of means over so much time; 0: of the last row
+  int jobs = 0;           // runs at a time; 0: one for each core
   bool again = false;
   bool json = false;
   bool quiet = false;
@@ -136,6 +141,7 @@ struct CompareArguments {
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
+  double mean_ps = 0;    // the table has means over the last so much time; 0: the last rows
   bool tensile = false;  // strength, toughness and so on of runs that pull a rope
   bool torsion = false;  // the largest torque and what came with it, of runs that twist a rope
   std::string svg, csv;  // write these files instead of a page
@@ -245,6 +251,35 @@ struct ExportArguments {
 int export_command(const ExportArguments& arguments);
 
 int cite_command(const std::string& directory);
+
+struct AtomsArguments {
+  std::string path;       // directory of a run, or a state file
+  SingleState state;      // of a state file, but for its source
+  std::string out;        // .data, .xyz or .extxyz
+  long frame = -1;        // of a run; from the end if negative
+  std::string at;         // limit, whose place and time are wanted instead
+  double length = 12;     // nm, of that place
+  std::string tubes;      // "0-18,20"; empty: all
+  std::string between;    // "20,40" nm along each tube; empty: all
+  std::string potential;  // empty: that of the sets
+  bool relax = false;
+  bool force = false;
+  bool json = false;
+};
+int atoms_command(const AtomsArguments& arguments);
+
+struct CoarsenArguments {
+  std::vector<std::string> files;
+  std::string out;                      // directory of the run to make
+  std::string state;                    // CSV file to write instead, of one frame
+  std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
+  double element_length = 0;            // nm; 0: the set's
+  double time_step_fs = 1;              // of MD steps in dumps that state no time
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+int coarsen_command(const CoarsenArguments& arguments);
 
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it

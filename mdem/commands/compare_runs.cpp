@@ -34,10 +34,10 @@ void write(const std::string& path, const std::string& text) {
   fmt::print("{} written\n", path);
 }
 
-std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictured) {
+std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictured, double mean_ps) {
   std::vector<RunCurve> curves;
   for (const RunGroup& group : groups)
-    curves.push_back(curve_of(group, pictured && groups.size() <= most_pictured));
+    curves.push_back(curve_of(group, pictured && groups.size() <= most_pictured, mean_ps));
   return curves;
 }
 
@@ -74,19 +74,28 @@ std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string
 }
 
 void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::vector<RunGroup>& with_others) {
-  if (!a.y.empty() || !a.levels.empty() || a.log)
+  if (!a.y.empty() || a.log || a.mean_ps > 0)
     throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
                      a.torsion ? "draws the largest torque alone" : "draws strength alone",
-                     "leave out --y, --level and --log");
-  const LoadTestKind& kind = a.torsion ? torsion_kind() : tensile_kind();
+                     "leave out --y, --log and --mean");
+  LoadTestKind kind = a.torsion ? torsion_kind() : tensile_kind();
+  for (const std::string& text : a.levels) {
+    const ReferenceLevel level = level_of(text);
+    kind.levels.emplace_back(level.value, level.name);
+  }
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
+  if (!a.svg.empty() && tests.size() == 1)
+    throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
+                     "has one point, and a figure needs two or more",
+                     a.torsion ? "draw the curve of the run: --x rotation_deg --y torque_upper_nN_nm"
+                               : "draw the curve of the run: --x ends_strain --y stress_GPa");
   if (!a.svg.empty()) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
   if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
   if (wanted.page.empty()) return;
-  const std::vector<RunCurve> curves = curves_of(groups, true);
+  const std::vector<RunCurve> curves = curves_of(groups, true, 0);
   RunsFigure figure;
   figure.x = a.torsion ? "rotation_deg" : "ends_strain";
   figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
@@ -104,7 +113,7 @@ void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::
   figure.y = a.y;
   figure.y_decades = a.log;
   for (const std::string& level : a.levels) figure.levels.push_back(level_of(level));
-  const std::vector<RunCurve> curves = curves_of(groups, !wanted.page.empty());
+  const std::vector<RunCurve> curves = curves_of(groups, !wanted.page.empty(), a.mean_ps);
   if (!a.svg.empty()) write(a.svg, drawn(runs_svg(curves, figure), "--y"));
   if (!a.csv.empty()) write(a.csv, runs_csv(curves, figure));
   if (!wanted.page.empty()) write(wanted.page, runs_page(wanted.title, curves, figure));

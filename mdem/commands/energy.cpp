@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "run/threads.hpp"
 #include "scene/kinds/state.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -58,6 +58,7 @@ int energy_command(const EnergyArguments& a) {
   SingleState state = a.options;
   state.source = std::make_shared<StateSource>(a.state);
   const EvaluatedState found = evaluate(state);
+  if (!found.note.empty()) fmt::print(stderr, "ropewalk: note: {}\n", found.note);
   const Forces& forces = found.forces;
   const NetForce net = net_force(found.built.state, forces);
   if (a.json) {

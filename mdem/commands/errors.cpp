@@ -7,13 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <map>
+#include <utility>
 
 #include "campaign/error_runs.hpp"
+#include "campaign/numeric_runs.hpp"
+#include "campaign/repeated_run.hpp"
 #include "commands/commands.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
 #include "model/error.hpp"
+#include "report/runs_page.hpp"
 #include "run/tell.hpp"
 
 namespace ropewalk {
@@ -60,6 +66,60 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
   if (!none.empty()) fmt::print("No influence beyond rounding on {}.\n", none);
 }
 
+// What would halve the error of the results that this source decides.
+std::string remedy_of(const std::string& source, const NumericErrors& whole, const RunErrors& parameters) {
+  for (const NumericSource& s : whole.runs().sources)
+    if (s.name == source) return s.remedy;
+  if (source == "statistics")
+    return whole.runs().mean_ps > 0 ? "a mean over four times as long (--mean and run.duration_ps)"
+                                    : "the mean of four runs from other starts (replicates = 4 in a sweep)";
+  if (source == "potential") return "no run of this model: potentials of carbon lie so far apart";
+  for (const ErrorSource& s : parameters.sources())
+    if (s.name == source) return fmt::format("{} known twice as well as to {:.2g} %", source, 100 * s.sigma);
+  return "";
+}
+
+// Results without an error beyond rounding are left out.
+void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters, const std::vector<LogRow>& log) {
+  constexpr double rounding = 1e-9, noise = 1e-5;  // of the largest value, and of 1 in its unit
+  const double mean_ps = whole.runs().mean_ps;
+  fmt::print("{:<26} {:>14} {:>12} {:>11} {:>12} {:>11}   {}\n",
+             mean_ps > 0 ? fmt::format("mean of the last {:.4g} ps", mean_ps) : "at the end", "value",
+             "± statistics", "± numerics", "± parameters", "± potential", "decided by");
+  std::map<std::string, std::vector<std::string>> deciders;
+  std::string too_short;
+  double needed = 0;
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    const Observable& o = observables()[k];
+    if (o.group == ObservableGroup::time || o.name == "time_step_fs") continue;
+    const WholeError e = whole.at_end([k](const LogRow& row) { return row.values()[k]; });
+    double largest = 1;
+    for (const LogRow& row : log)
+      if (const double v = row.values()[k]; std::isfinite(v)) largest = std::max(largest, std::fabs(v));
+    const bool zero = std::fabs(e.value) <= e.total() && e.total() <= noise * largest;
+    if (!std::isfinite(e.value) || e.total() <= rounding * largest || zero) continue;
+    deciders[e.decides].push_back(o.name);
+    fmt::print(
+        "{:<26} {:>14} {:>12.2g} {:>11} {:>12.2g} {:>11.2g}   {}\n", o.name, value_text(e.value, e.total()),
+        e.statistics, fmt::format("{}{:.2g}", e.bound ? "≤ " : "", e.numerics), e.parameters, e.potential,
+        e.decides +
+            (std::isfinite(e.correlation_ps) ? fmt::format("; correlated over {:.2g} ps", e.correlation_ps) : ""));
+    if (!std::isfinite(e.needed_ps)) continue;
+    too_short += (too_short.empty() ? "" : ", ") + o.name;
+    needed = std::max(needed, e.needed_ps);
+  }
+  for (const auto& [source, names] : deciders)
+    if (!source.empty())
+      fmt::print("{} decide{} {} of them. What would halve it: {}.\n", source, source.back() == 's' ? "" : "s",
+                 names.size(), remedy_of(source, whole, parameters));
+  for (const NumericSource& s : whole.runs().sources) fmt::print("{}: {}.\n", s.name, s.change);
+  if (!whole.runs().starts.empty())
+    fmt::print("statistics: scatter of this run and {} from other starts.\n", whole.runs().starts.size());
+  if (!too_short.empty())
+    fmt::print("Too short for an error by blocks, about {:.2g} ps would do: {}.\n", needed, too_short);
+  for (const std::string& why : whole.runs().remarks) fmt::print("{}.\n", why);
+}
+
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 void print_left_out(const ErrorInputs& inputs) {
@@ -71,71 +131,152 @@ void print_left_out(const ErrorInputs& inputs) {
   if (!inputs.not_varied.empty()) fmt::print("Not varied: {}.\n", joined(inputs.not_varied));
 }
 
+// Runs side by side; throws where one of them does not finish.
+class Repeats {
+ public:
+  Repeats(int jobs, bool quiet) : jobs_(jobs), quiet_(quiet) {}
+
+  void add(const std::string& name, double cost, std::function<int()> run) {
+    cost_ += cost;
+    tasks_.push_back({name, std::move(run)});
+  }
+  // `one`: processor time of the run that is repeated, s.
+  void say_cost(double one) const {
+    tell_as_is(fmt::format("{} runs, which cost as much as {:.2g} like this one: about {:.2g} min on {} cores\n",
+                           tasks_.size(), cost_, cost_ * one / jobs_ / 60, jobs_));
+  }
+  void go() {
+    std::vector<ProcessTask> processes;
+    std::vector<std::string> failed;
+    std::size_t number = 0;
+    for (const auto& [task_name, run] : tasks_) {
+      const std::string name = task_name;
+      processes.push_back({[&, name, run = run, number = ++number] {
+                             if (!quiet_) tell_as_is(fmt::format("{}/{} {}\n", number, tasks_.size(), name));
+                             try {
+                               if (!std::freopen("/dev/null", "w", stdout)) return 3;
+                               return run();
+                             } catch (const std::exception& e) {
+                               return report_error(fmt::format("ropewalk errors: {}", name).c_str(), e);
+                             }
+                           },
+                           [&failed, name](int status) {
+                             if (status != 0)
+                               failed.push_back(WIFEXITED(status) ? name : name + ": " + death_words(status));
+                           }});
+    }
+    run_processes(processes, jobs_);
+    if (!failed.empty())
+      throw std::runtime_error(fmt::format(
+          "{} of {} runs did not finish ({}): a run that fails by itself is too sensitive for an error to be "
+          "given; else give the same command again, which keeps those that are finished",
+          failed.size(), tasks_.size(), failed.front()));
+  }
+
+ private:
+  int jobs_;
+  bool quiet_;
+  double cost_ = 0;
+  std::vector<std::pair<std::string, std::function<int()>>> tasks_;
+};
+
+// The run whose errors are asked for.
+struct FinishedRun {
+  RunDirectory dir;
+  Scene scene;
+  Prepared prepared;
+  Manifest manifest;
+  std::vector<LogRow> log;
+
+  explicit FinishedRun(const std::string& path)
+      : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    if (manifest.status == "taken from atoms")
+      throw InputError({dir.path, 0, ""}, "is no run that was run: its elements were taken from atoms",
+                       "run a scene that begins with its final.csv");
+    if (manifest.status != "finished")
+      throw InputError({dir.path, 0, ""}, fmt::format("is a run that is {}", manifest.status),
+                       "end it with `ropewalk resume`, or run the scene anew");
+    log = read_log(dir.log());
+    if (log.empty()) throw InputError({dir.log(), 0, ""}, "has no rows", "run the scene anew");
+  }
+};
+
+// What follows from the errors of the inputs, into its files.
+RunErrors write_input_errors(const FinishedRun& run, const ErrorInputs& inputs, std::string& json) {
+  const std::string directory = run.dir.path + "/errors";
+  std::vector<ErrorSource> sources;
+  for (const VariedNumber& s : inputs.varied) sources.push_back(s.error);
+  RunErrors errors(directory, sources, correlation_of(inputs.varied, run.scene), run.log);
+  json = run_errors_json(errors, run.log, inputs.without_error, inputs.not_varied);
+  write_file_atomically(directory + "/errors.json", json);
+  write_file_atomically(run.dir.file("errors.csv"), run_errors_csv(errors, run.log, &ResultError::error));
+  write_file_atomically(run.dir.file("errors-potential.csv"),
+                        run_errors_csv(errors, run.log, &ResultError::potential));
+  return errors;
+}
+
+NumericErrors write_numeric_errors(const FinishedRun& run, NumericRuns what, RunErrors parameters,
+                                   std::string& json) {
+  const std::string directory = run.dir.path + "/errors";
+  const NumericErrors errors(directory, std::move(what), std::move(parameters), run.log);
+  json = numeric_errors_json(errors, run.log);
+  write_file_atomically(directory + "/numerics.json", json);
+  write_file_atomically(run.dir.file("errors-numerics.csv"),
+                        whole_errors_csv(errors, run.log, [](const WholeError& e) { return e.numerics; }));
+  write_file_atomically(run.dir.file("errors-statistics.csv"),
+                        whole_errors_csv(errors, run.log, [](const WholeError& e) { return e.statistics; }));
+  return errors;
+}
+
 }  // namespace
 
 int errors_command(const ErrorsArguments& a) {
-  const RunDirectory dir{a.dir};
-  Scene scene = read_run_scene(dir);
-  const Prepared prepared = prepare(scene);
-  const Manifest manifest = read_manifest(dir.manifest());
-  if (manifest.status != "finished")
-    throw InputError({dir.path, 0, ""}, fmt::format("is a run that is {}", manifest.status),
-                     "end it with `ropewalk resume`, or run the scene anew");
-  const std::vector<LogRow> log = read_log(dir.log());
-  if (log.empty()) throw InputError({dir.log(), 0, ""}, "has no rows", "run the scene anew");
-  const ErrorInputs inputs = error_inputs(scene, prepared.topology.tubes());
-  const std::vector<VariedNumber>& sources = inputs.varied;
-  const ErrorRuns runs(dir, scene, prepared.time_step, a.again);
+  const FinishedRun run(a.dir);
+  const int tubes = run.prepared.topology.tubes();
+  const ErrorInputs inputs = a.numerics ? inputs_with_errors(run.scene, tubes) : error_inputs(run.scene, tubes);
+  NumericPlan plan;
+  if (a.numerics) plan = numeric_plan(run.dir, run.scene, run.prepared, run.log);
+  plan.what.mean_ps = a.mean_ps;
+  if (a.mean_ps > 0 && stands_still(run.log))
+    throw InputError({run.dir.log(), 0, "--mean"},
+                     "is the log of a relaxation: its rows are no times to average over", "leave --mean out");
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
-  std::vector<ProcessTask> tasks;
-  std::vector<std::string> failed;
-  std::size_t number = 0, count = 0;
-  for (const VariedNumber& source : sources) count += source.error.minus.empty() ? 1 : 2;
-  if (!a.quiet)
-    tell_as_is(fmt::format("{} runs like this one, about {:.2g} min on {} cores\n", count,
-                           static_cast<double>(count) * manifest.wall_seconds * manifest.threads / jobs / 60,
-                           jobs));
-  for (const VariedNumber& source : sources)
-    for (const bool plus : {true, false}) {
-      const std::string name = plus ? source.error.plus : source.error.minus;
-      if (name.empty()) continue;
-      ++number;
-      tasks.push_back({[&, plus, number, name] {
-                         if (!a.quiet) tell_as_is(fmt::format("{}/{} {}\n", number, count, name));
-                         try {
-                           if (!std::freopen("/dev/null", "w", stdout)) return 3;
-                           return runs.run(source, plus);
-                         } catch (const std::exception& e) {
-                           return tell_failure(fmt::format("ropewalk errors: {}", name).c_str(), e);
-                         }
-                       },
-                       [&failed, name](int status) {
-                         if (status != 0)
-                           failed.push_back(WIFEXITED(status) ? name : name + ": " + death_words(status));
-                       }});
-    }
-  run_processes(tasks, jobs);
-  if (!failed.empty())
-    throw std::runtime_error(fmt::format(
-        "{} of {} runs did not finish ({}): a run that fails by itself is too sensitive for an error to be "
-        "given; else give the same command again, which keeps those that are finished",
-        failed.size(), tasks.size(), failed.front()));
-  std::vector<ErrorSource> described;
-  for (const VariedNumber& s : sources) described.push_back(s.error);
-  const RunErrors errors(dir.path + "/errors", described, correlation_of(sources, scene), log);
-  const std::string json = run_errors_json(errors, log, inputs.without_error, inputs.not_varied);
-  write_file_atomically(dir.path + "/errors/errors.json", json);
-  write_file_atomically(dir.file("errors.csv"), run_errors_csv(errors, log, &ResultError::error));
-  write_file_atomically(dir.file("errors-potential.csv"), run_errors_csv(errors, log, &ResultError::potential));
-  write_report(dir, scene, prepared);
+  Repeats repeats(jobs, a.quiet);
+  const ErrorRuns runs(run.dir, run.scene, run.prepared, a.again);
+  for (const VariedNumber& source : inputs.varied)
+    for (const bool plus : {true, false})
+      if (const std::string& name = plus ? source.error.plus : source.error.minus; !name.empty())
+        repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
+  const RunInputs as_it_was = inputs_of(run.dir, run.scene);
+  for (const NumericRun& r : plan.runs)
+    repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
+      RunInputs changed = as_it_was;
+      changed.scene = r.scene;
+      return repeat_run(run.dir, run.scene, r.folder, changed, a.again);
+    });
+  if (!a.quiet) repeats.say_cost(run.manifest.wall_seconds * run.manifest.threads);
+  repeats.go();
+  std::string json;
+  RunErrors errors;
+  if (!inputs.varied.empty()) errors = write_input_errors(run, inputs, json);
+  if (a.numerics) {
+    const NumericErrors whole = write_numeric_errors(run, plan.what, errors, json);
+    if (!a.json) print_whole_errors(whole, errors, run.log);
+  } else if (!a.json) {
+    print_table(errors, run.log);
+  }
+  write_report(run.dir, run.scene, run.prepared);
   if (a.json) {
     fmt::print("{}", json);
-  } else {
-    print_table(errors, log);
-    print_left_out(inputs);
-    fmt::print("Errors of every row: {} and {}; bands in {}\n", dir.file("errors.csv"),
-               dir.file("errors-potential.csv"), dir.report());
+    return 0;
   }
+  print_left_out(inputs);
+  std::string files = run.dir.file("errors.csv") + ", " + run.dir.file("errors-potential.csv");
+  if (errors.empty()) files.clear();
+  if (a.numerics)
+    files += fmt::format("{}{}, {}", files.empty() ? "" : ", ", run.dir.file("errors-numerics.csv"),
+                         run.dir.file("errors-statistics.csv"));
+  fmt::print("Errors of every row: {}; bands in {}\n", files, run.dir.report());
   return 0;
 }
 

@@ -35,10 +35,10 @@ int import_command(const ImportArguments& a) {
                      "name the directory behind --lammps");
   TerminalListener terminal(false);
   const ImportedRun run = import_run(dir, terminal);
-  fmt::print("{} states taken over, up to step {}, {:.4g} ps. Report: {}\n", run.states, run.step, run.time,
-             dir.report());
+  fmt::print("{} states taken over, up to step {}, {:.4g} ps{}\n", run.states, run.step, run.time,
+             std::filesystem::exists(dir.report()) ? ". Report: " + dir.report() : "");
   if (!run.passed.empty()) fmt::print("Limits passed: {}\n", run.passed);
-  return 0;
+  return run.at_rest ? 0 : 4;
 }
 
 }  // namespace ropewalk

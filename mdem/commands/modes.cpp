@@ -11,10 +11,10 @@
 #include "model/error.hpp"
 #include "run/run_checkpoint.hpp"
 #include "run/run_directory.hpp"
-#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
 #include "sim/statics/stiffness.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

@@ -39,6 +39,7 @@ int picture_command(const PictureArguments& a) {
   PlateOptions options;
   options.at = a.at;
   options.from = a.from;
+  options.colour = a.colour;
   options.sections = a.sections;
   options.curves = curves_of(a.curves);
   if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});

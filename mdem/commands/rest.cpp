@@ -14,9 +14,10 @@
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
-#include "run/threads.hpp"
+#include "run/results.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -28,7 +29,7 @@ constexpr double of_the_default = 0.1;
 
 double viscosity_of(const RestArguments& a, const Scene& scene) {
   if (a.viscosity) return *a.viscosity;
-  const double standard = contact_viscosity(default_viscosity, scene.element_length, scene.parameters().radius);
+  const double standard = contact_viscosity(default_viscosity, scene.element_length, scene.sets);
   return scene.damping.contact.eta == standard ? of_the_default * default_viscosity : -1;
 }
 
@@ -126,7 +127,7 @@ int rest_command(const RestArguments& a) {
       tell_not_ended(dir, points[k].name);
       return 3;
     }
-    sides[k] = rest_side(read_log(run.log()), std::stod(points[k].values.front()));
+    sides[k] = rest_side(read_log(run.log()), limits_of(run), std::stod(points[k].values.front()));
   }
   const RestVerdict verdict = rest_verdict(sides, a.tolerance);
   write_file_atomically(dir.path + "/rest.csv", rest_csv(sides));
@@ -137,6 +138,7 @@ int rest_command(const RestArguments& a) {
     return 0;
   }
   print_sides(sides, theory, length);
+  for (const std::string& beyond : beyond_of(sides)) fmt::print("{}\n", beyond);
   const bool quoted = std::isfinite(verdict.twist.value);
   fmt::print("{}\n{}Numbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words,
              quoted ? left_out_of_rest() + "\n" : "", dir.path, dir.path);

@@ -1,11 +1,12 @@
 // `run` and `resume`.
+#include "commands/cluster_scripts.hpp"
 #include "commands/commands.hpp"
 #include "run/begin_run.hpp"
 #include "run/limit_watch.hpp"
 #include "run/terminal_listener.hpp"
-#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -32,6 +33,7 @@ int code_of(const RunResult& r) {
 }  // namespace
 
 int run_command(const RunArguments& a) {
+  if (!a.slurm.empty()) return write_run_script(a);
   use_threads(a.threads);
   use_instructions(a.instructions);
   const Scene scene = read_scene(a.scene);

@@ -32,6 +32,11 @@ std::string find_program(const std::string& folder, const std::string& name) {
   return name;
 }
 
+std::string this_program() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).string();
+}
+
 void hand_over_to_sibling(char** argv) {
   if (!argv[0] || !argv[1]) return;
   for (const Sibling& sibling : siblings) {

@@ -12,7 +12,7 @@
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
 #include "io/clocks.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -29,7 +29,7 @@ constexpr std::size_t most_built = 20;  // scenes of points, where a script is w
 int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<SweepPoint>& points, int jobs) {
   const std::vector<double> seconds =
       seconds_of_points(sweep, points, [](const SweepPoint& p, const std::exception& e) {
-        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", p.name, failure_words(e)));
+        tell_as_is(fmt::format("ropewalk: {} cannot be timed: {}\n", p.name, error_words(e)));
       });
   double total = 0;
   fmt::print("{:>5}  {:<50} {:>10}\n", "", "point", "time");
@@ -50,7 +50,8 @@ int dry_run(const Sweep& sweep, const CampaignDirectory& dir, const std::vector<
 
 int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points, bool with_table) {
   std::map<std::string, std::size_t> counts;
-  std::vector<std::string> failed, beyond, elsewhere;
+  std::vector<std::string> failed, beyond, elsewhere, misses;
+  std::size_t expected = 0, points_missed = 0;
   double seconds = 0;
   std::size_t passed = 0;
   for (const SweepPoint& p : points) {
@@ -65,6 +66,11 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
     if (first_limit(limits)) ++passed;
     if (beyond_limits(limits) > far_beyond && progress.stage == Stage::ended)
       beyond.push_back(fmt::format("{}, {}: {}", p.name, beyond_words(limits), worst_words(limits)));
+    const std::vector<Judgement> all = judged(dir.point(p.name));
+    expected += all.size();
+    if (missed(all) > 0) ++points_missed;
+    for (const Judgement& j : all)
+      if (!j.holds) misses.push_back(fmt::format("{}: {}", p.name, j.words));
   }
   std::string words;
   for (const auto& [status, count] : counts)
@@ -76,8 +82,13 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
     fmt::print("{} of them {} beyond a limit of the model: see first_limit and first_limit_ps in the table\n",
                passed, passed == 1 ? "is" : "are");
   for (const std::string& name : beyond) fmt::print("far beyond a limit: {}\n", name);
+  for (const std::string& words : misses) fmt::print("{}\n", words);
+  if (expected > 0)
+    fmt::print("{} of {} expectations hold{}\n", expected - misses.size(), expected,
+               points_missed > 0 ? fmt::format("; {} of the points miss one", points_missed) : "");
   if (with_table) fmt::print("Table: {}\n", dir.table());
-  return failed.empty() && elsewhere.empty() ? 0 : 3;
+  if (!failed.empty() || !elsewhere.empty()) return 3;
+  return misses.empty() ? 0 : not_as_expected;
 }
 
 }  // namespace

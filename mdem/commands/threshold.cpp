@@ -17,8 +17,8 @@
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/tell.hpp"
-#include "run/threads.hpp"
 #include "run/wall_time.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {

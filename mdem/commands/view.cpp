@@ -13,7 +13,7 @@ namespace ropewalk {
 
 int view_command(const ViewArguments& a) {
   if (!a.movie.empty()) {
-    const MovieSize movie = make_movie({a.dir}, {a.movie, a.from, a.frames, a.fps, a.width, a.force});
+    const MovieSize movie = make_movie({a.dir}, {a.movie, a.from, a.colour, a.frames, a.fps, a.width, a.force});
     fmt::print("{} written: {} of {} frames\n", a.movie, movie.frames, movie.stored);
     return 0;
   }

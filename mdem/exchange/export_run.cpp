@@ -47,6 +47,12 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   start.time_step = s.time_step();
   start.work = s.work();
   start.dissipated = s.dissipated();
+  start.heat = s.heat();
+  start.lineage = scene.lineage;
+  const TubeGroups& groups = s.topology().groups;
+  if (!groups.strand_begin.empty())
+    start.strand_begin.assign(groups.strand_begin.begin(), groups.strand_begin.end() - 1);
+  start.strand_holes = groups.strand_holes;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
   const RunDirectory here{"."};
@@ -97,7 +103,7 @@ constexpr const char* readme =
     "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
-// `run` divides steps with which its account of energy does not close, and LAMMPS keeps them.
+// `run` divides steps with which its energy balance does not close, and LAMMPS keeps them.
 void tell_of_long_steps(const Simulation& from, RunListener& listener) {
   const auto closes = [&](int parts) {
     Simulation trial = from;
@@ -115,7 +121,7 @@ void tell_of_long_steps(const Simulation& from, RunListener& listener) {
   if (parts == 1) return;
   const double step = from.time_step() / units::fs;
   listener.tell(
-      fmt::format("note: with steps of {:.4g} fs the account of energy does not close in the first {} of them, and "
+      fmt::format("note: with steps of {:.4g} fs the energy balance does not close in the first {} of them, and "
                   "LAMMPS cannot divide them as `run` does: {}",
                   step, StepControl::window,
                   closes(parts) ? fmt::format("set run.time_step_fs = {:.4g} and export again", step / parts)
@@ -136,6 +142,7 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.time = s.state().time;
   header.work = s.work();
   header.dissipated = s.dissipated();
+  header.heat = s.heat();
   write_file_atomically(dir.first_state(),
                         state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
   write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));

@@ -13,6 +13,7 @@
 #include "model/error.hpp"
 #include "run/colours.hpp"
 #include "run/limit_watch.hpp"
+#include "run/pending_files.hpp"
 #include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
@@ -66,7 +67,7 @@ class Import {
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
                        "let LAMMPS run further, or go on with `ropewalk resume`");
     write(from);
-    return {taken_, reached_, last_.time, passed_words(watch_.records())};
+    return {taken_, reached_, last_.time, passed_words(watch_.records()), at_rest_};
   }
 
  private:
@@ -95,6 +96,7 @@ class Import {
     account.kinetic = from.kinetic;
     account.work = from.work;
     account.dissipated = from.dissipated;
+    account.heat = from.heat;
     account.first_energy = checkpoint_.first_energy;
     account.first = first_;
     account.ends = readings_at(state);
@@ -118,15 +120,16 @@ class Import {
       listener_.tell(line);
   }
 
-  // Judges the account of energy as the step control of `run` does, over a window of at least the same length.
+  // Judges the energy balance as the step control of `run` does, over a window of at least the same length.
   void check_account(const EnergyAccount& account, std::int64_t step) {
     if (scene_.run.mode == RunOptions::Mode::relax || step < marked_at_ + StepControl::window) return;
-    const EnergyMark now{account.potential.potential() + account.kinetic, {account.work, account.dissipated}};
+    const EnergyMark now{account.potential.potential() + account.kinetic,
+                         {account.work, account.dissipated, account.heat}};
     const bool closes = account_closes(mark_, now, account.kinetic, account.potential.bonds(),
                                        account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
-          "note: from step {} to {} the account of energy does not close. `run` would have gone back and divided "
+          "note: from step {} to {} the energy balance does not close. `run` would have gone back and divided "
           "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
           "again",
           marked_at_, step, prepared_.time_step / units::fs));
@@ -155,7 +158,7 @@ class Import {
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.set_memory(memory_);
-    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated});
+    simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated, last_.heat});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.log = mark_of(log_);
     checkpoint_.frames = (*frames_)->mark();
@@ -169,6 +172,7 @@ class Import {
     m.status = last_.time + 0.5 * prepared_.time_step >= prepared_.duration ? "finished" : "interrupted";
     m.reason = fmt::format("steps {} to {} by LAMMPS", from, reached_);
     const StateFiles end = state_files(simulation, dir_.final_state());
+    if (scene_.run.mode == RunOptions::Mode::relax) judge_rest(simulation, m);
     write_file_atomically(dir_.log(), log_);
     frames_->replace();
     if (!end.memory.empty()) write_file_atomically(dir_.final_memory(), end.memory);
@@ -176,7 +180,20 @@ class Import {
     write_file_atomically(dir_.limits(), limits_json(checkpoint_.limits));
     write_file_atomically(dir_.manifest(), manifest_json(m));
     write_checkpoint(dir_, checkpoint_);
-    write_report(dir_, scene_, prepared_for_report());
+    report_or_tell(dir_, listener_, [&] { write_report(dir_, scene_, prepared_for_report()); });
+  }
+
+  // LAMMPS relaxes until forces are small. That the energy of the bonds is near the minimum's is looked for here.
+  void judge_rest(Simulation& simulation, Manifest& m) {
+    const Relaxed end = simulation.relax(scene_.run.goal, 0, [](long) { return true; });
+    at_rest_ = end.at_rest;
+    if (at_rest_) return;
+    m.status = "not relaxed";
+    m.reason += fmt::format(
+        ", which looks at forces alone: the largest is {:.3g} eV/nm, and the energy of the bonds is known within "
+        "{:.2g} of its value, {:.2g} asked for",
+        end.force, end.error, scene_.run.goal.energy);
+    listener_.tell(fmt::format("note: not at rest after {}; go on: ropewalk resume {}", m.reason, dir_.path));
   }
 
   // The report compares with the state at time zero.
@@ -202,7 +219,7 @@ class Import {
   LammpsRow last_;
   EnergyMark mark_;  // before the states that are not judged yet
   std::int64_t marked_at_ = 0;
-  bool told_of_account_ = false;
+  bool told_of_account_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // of the force terms, in the last state
   std::string log_;

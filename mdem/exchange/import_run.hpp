@@ -11,8 +11,9 @@ namespace ropewalk {
 struct ImportedRun {
   long states = 0;  // taken over
   std::int64_t step = 0;
-  double time = 0;     // ps
-  std::string passed;  // limits, in words; empty: none
+  double time = 0;      // ps
+  std::string passed;   // limits, in words; empty: none
+  bool at_rest = true;  // a relaxation: as the scene asks
 };
 
 // Adds what LAMMPS has left in an exported directory to the files of the run. Throws InputError where that does not

@@ -105,8 +105,12 @@ double CsvReader::finite_number(std::size_t cell, std::string_view column, const
   return value;
 }
 
+InputError CsvReader::error(std::string_view column, const std::string& what, const std::string& remedy) const {
+  return {{path_, number_, std::string(column)}, what, remedy};
+}
+
 void CsvReader::fail(std::string_view column, const std::string& what, const std::string& remedy) const {
-  throw InputError({path_, number_, std::string(column)}, what, remedy);
+  throw error(column, what, remedy);
 }
 
 std::string csv_cell(const std::string& text) {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "model/error.hpp"
+
 namespace ropewalk {
 
 // Blank lines are skipped; spaces around cells, a byte order mark and Windows line ends are accepted. A line that
@@ -32,6 +34,7 @@ class CsvReader {
   double number(std::size_t cell, std::string_view column, const char* remedy = "write a number") const;
   double finite_number(std::size_t cell, std::string_view column, const char* remedy = "write a number") const;
 
+  InputError error(std::string_view column, const std::string& what, const std::string& remedy) const;
   // Throws InputError at this line.
   [[noreturn]] void fail(std::string_view column, const std::string& what, const std::string& remedy) const;
 

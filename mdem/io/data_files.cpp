@@ -80,7 +80,11 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   const fs::path shipped = fs::path(data) / "parameters";
   for (const std::string& file : {name + ".toml", name})
     if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
-  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)), instead_of(name, data));
+  const std::string file = name + ".toml";
+  throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)),
+                   fs::is_regular_file(fs::path(folder) / file, error)
+                       ? fmt::format("write \"{}\" for the file beside the scene", printable(file))
+                       : instead_of(name, data));
 }
 
 }  // namespace ropewalk

@@ -1,5 +1,5 @@
 // Files and directories that stand beside those of the user until they are whole. Nothing else in the sources
-// renames one, or makes one under a name made from another's (tests/structure/removal.py).
+// renames one, or makes one under a name made from another's (tests/structure/doors.py).
 #pragma once
 
 #include <string>

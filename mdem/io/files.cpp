@@ -22,7 +22,8 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* not_written = "cannot be written";
-constexpr const char* part = ".part-";                          // of the name of a file that is being written
+constexpr const char* part = ".part-";  // of the name of a file that is being written
+constexpr const char* standard_input = "/dev/stdin";
 constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of a file that is not a regular one
 
 const char* remedy_for(int code) {
@@ -77,12 +78,31 @@ void flush_directory_of(const std::string& path) {
   if (fd.open()) uninterrupted([&] { return ::fsync(fd.get()); });
 }
 
+std::atomic<const char*> system_note{nullptr};
+
+// FAT has no permissions, and some file systems of networks and of FUSE do not flush.
+bool not_done_here(int code) {
+  return code == EPERM || code == EINVAL || code == ENOSYS || code == EOPNOTSUPP || code == ENOTTY;
+}
+
 FileError error_of(const std::string& path, const char* what) {
   const int code = errno;
   return {file_error(path, what, code), code};
 }
 
 }  // namespace
+
+bool flush_to_disk(int fd) {
+  if (uninterrupted([&] { return ::fdatasync(fd); }) == 0) return true;
+  if (errno == EPERM || !not_done_here(errno)) return false;
+  system_note = "the file system does not flush files to the disk: a power cut may lose what was written last";
+  return true;
+}
+
+std::string note_of_files() {
+  const char* const said = system_note.exchange(nullptr);
+  return said ? said : "";
+}
 
 InputError file_error(const std::string& path, const char* what, int code) {
   return InputError({path, 0, ""}, fmt::format("{}: {}", what, std::strerror(code)), remedy_for(code));
@@ -103,8 +123,10 @@ Draft::~Draft() {
 
 void Draft::take_permissions() {
   struct stat old {};
-  if (::lstat(path_.c_str(), &old) == 0 && S_ISREG(old.st_mode) && ::fchmod(file_.get(), old.st_mode & 0777) != 0)
-    throw error_of(path_, not_written);
+  if (::lstat(path_.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return;
+  if (::fchmod(file_.get(), old.st_mode & 0777) == 0) return;
+  if (!not_done_here(errno)) throw error_of(path_, not_written);
+  system_note = "the file system keeps no permissions: files have those that it gives them";
 }
 
 void Draft::write(std::string_view content) {
@@ -116,14 +138,14 @@ void Draft::need_room() const {
   // More than programs write at a time: where they found no room, this finds none.
   const std::string some(1 << 17, ' ');
   Descriptor file(uninterrupted([&] { return ::open(name_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC); }));
-  if (!file.open() || !write_all(file.get(), some) || uninterrupted([&] { return ::fsync(file.get()); }) != 0)
+  if (!file.open() || !write_all(file.get(), some) || !flush_to_disk(file.get()))
     throw error_of(path_, not_written);
 }
 
 void Draft::sync() {
   if (!file_.open()) return;
   take_permissions();
-  if (uninterrupted([&] { return ::fsync(file_.get()); }) != 0) throw error_of(path_, not_written);
+  if (!flush_to_disk(file_.get())) throw error_of(path_, not_written);
   if (file_.close() != 0 && errno != EINTR) throw error_of(path_, not_written);  // where interrupted it is closed
 }
 
@@ -172,15 +194,23 @@ Descriptor opened_to_write(const std::string& path, int flags) {
 }
 
 Descriptor opened_to_read(const std::string& path) {
-  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+  // Nobody may ever write to a pipe that a file was expected to be: neither open() nor read() may wait for it.
+  Descriptor file(uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }));
   if (!file.open()) throw file_error(path, "cannot be opened", errno);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
+  if (S_ISDIR(status.st_mode)) throw file_error(path, "cannot be read", EISDIR);
+  if (!S_ISREG(status.st_mode))
+    throw InputError({path, 0, ""}, "is not a regular file",
+                     fmt::format("name a file, or {} for standard input", standard_input));
   return file;
 }
 
 std::string read_file(const std::string& path) {
-  const Descriptor fd = opened_to_read(path);
   struct stat status {};
-  if (::fstat(fd.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
+  const bool pipe = path == standard_input && ::fstat(STDIN_FILENO, &status) == 0 && !S_ISREG(status.st_mode);
+  const Descriptor fd = pipe ? Descriptor(::dup(STDIN_FILENO)) : opened_to_read(path);
+  if (!fd.open() || ::fstat(fd.get(), &status) != 0) throw file_error(path, "cannot be read", errno);
   std::string content;
   if (status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size) + 1);
   char buffer[1 << 16];
@@ -230,11 +260,14 @@ std::string without_part(const std::string& name) {
 
 const char* remedy_for_errno(int code) { return remedy_for(code); }
 
-void refuse_devices(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) throw file_error(path, "cannot be opened", errno);
-  if (!S_ISREG(status.st_mode)) throw InputError({path, 0, ""}, "is not a regular file", "name a file");
+std::ifstream opened_stream(const std::string& path) {
+  refuse_devices(path);
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw file_error(path, "cannot be opened", errno);
+  return file;
 }
+
+void refuse_devices(const std::string& path) { opened_to_read(path); }
 
 void refuse_existing(const std::string& path, const std::string& option, bool force) {
   if (!force && ::access(path.c_str(), F_OK) == 0)

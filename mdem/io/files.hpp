@@ -1,6 +1,7 @@
 // Files are written whole or not at all.
 #pragma once
 
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -9,12 +10,21 @@
 
 namespace ropewalk {
 
-// The content of a file. Throws InputError when the file cannot be read, and when a pipe or a device, which may
-// never end, gives more than 256 MiB.
+// The content of a regular file, or of standard input by the name /dev/stdin. Throws InputError when the file
+// cannot be read, is a pipe or a device, which may never end, and when standard input gives more than 256 MiB.
 std::string read_file(const std::string& path);
+
+// Has what was written to a file on the disk. False, with errno: it failed. A file system that cannot do it is no
+// failure, and leaves a note.
+bool flush_to_disk(int fd);
+// What a file system could not do, for one line at the end of a program; empty: nothing, or it was asked for
+// before.
+std::string note_of_files();
 
 // Says how to remedy an error of the system, by its number.
 const char* remedy_for_errno(int code);
+// A stream of a regular file, for files that are read piece by piece. Throws as opened_to_read().
+std::ifstream opened_stream(const std::string& path);
 // Refuses anything but a regular file: a device may have no end.
 void refuse_devices(const std::string& path);
 
@@ -36,7 +46,7 @@ void refuse_strange(const std::string& path, bool directory = false);
 // A file that is written in place, made where it is not there; `flags`: O_RDWR or O_WRONLY, and others. Throws
 // InputError where it is a link, not a regular file, or one with a second name, which would be written as well.
 Descriptor opened_to_write(const std::string& path, int flags);
-// Throws InputError where the file cannot be opened.
+// Throws InputError where the file cannot be opened, or is not a regular one. Never waits for a pipe.
 Descriptor opened_to_read(const std::string& path);
 
 // Throws InputError where a file that an option names exists, unless `force` is set.

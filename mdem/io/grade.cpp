@@ -13,7 +13,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double known_well = 0.01;          // relative error of a good stiffness, and of a good contact
-constexpr double unknown = 0.5;              // relative error of a stiffness that is not known
+constexpr double unknown_stiffness = 0.5;    // relative error of a stiffness that is not known
 constexpr double collapsing_diameter = 4.2;  // nm
 
 constexpr double thin_shell = 0.1;  // EI from EA r^2/2, relative: calibrated tubes agree to 0.04
@@ -34,7 +34,7 @@ void grade_stiffness(const ParameterSet& set, Grade& grade) {
       continue;
     }
     const double error = *q->standard_error / q->value;
-    add(grade, error > unknown ? Level::unfit : Level::limited,
+    add(grade, error > unknown_stiffness ? Level::unfit : Level::limited,
         fmt::format("{} is known to {:.2g} %", key, 100 * error));
   }
 }
@@ -111,6 +111,115 @@ void grade_contact(const ParameterSet& set, Grade& grade) {
 
 double value_or_none(const Quantity* q) { return q ? q->value : -1; }
 
+// Where values lie for all tubes of carbon, in whatever potential, or for their ratios to what they must agree
+// with. Wide enough for any tube, and so narrow that ten times the value, a tenth of it, another sign and another
+// unit lie outside.
+struct Range {
+  const char* what;
+  double value, least, most;
+};
+
+void within(const std::vector<Range>& ranges, Grade& grade) {
+  for (const Range& r : ranges)
+    if (!(r.value >= r.least && r.value <= r.most))
+      add(grade, Level::limited,
+          fmt::format("{} is {:.4g}, and {:.4g} to {:.4g} is to be expected: is a number or a unit wrong?", r.what,
+                      r.value, r.least, r.most));
+}
+
+// The shell that EA and EI belong to has GJ too, and with it kGA (G. R. Cowper, J. Appl. Mech. 33, 335 (1966)).
+void grade_shell(const ParameterSet& set, Grade& grade) {
+  const BondStiffness& b = set.bond;
+  const double r2 = set.radius * set.radius, poisson = b.stretch * r2 / (2 * b.twist) - 1;
+  std::vector<Range> ranges = {{"Poisson's ratio, EA r^2/(2 GJ) - 1,", poisson, -0.1, 0.6}};
+  if (b.shear > 0) {
+    const double expected = 2 * (1 + poisson) / (4 + 3 * poisson) * b.twist / r2;
+    ranges.push_back({"kGA over that of a thin tube", b.shear / expected, 0.8, 1.25});
+  }
+  if (const Quantity* q = find_quantity(set, "atomistic.poisson"))
+    ranges.push_back({"poisson", q->value, 0.04, 0.5});
+  if (const Quantity* q = find_quantity(set, "atomistic.energy_per_atom"))
+    ranges.push_back({"energy_per_atom (eV)", q->value, -9, -6});
+  within(ranges, grade);
+}
+
+// Limits of the model, by the width of the tube: a kink at 0.155 nm/d^2 (S. Iijima et al., J. Chem. Phys. 104, 2089
+// (1996), DOI 10.1063/1.470966), and the rest by those that have been calibrated.
+void grade_limits(const ParameterSet& set, Grade& grade) {
+  const Validity& v = set.validity;
+  const double d = 2 * set.radius;
+  std::vector<Range> ranges = {{"kink_curvature over 0.155 nm/(2 r)^2", v.kink_curvature * d * d / 0.155, 0.5, 2},
+                               {"twist_collapse", v.twist_collapse, 0.012, 0.2},
+                               {"stretch", v.stretch, 0.02, 0.2}};
+  if (v.endless_collapse > 0) {
+    Validity of_12_nm = v;
+    of_12_nm.endless_collapse = 0;
+    ranges.push_back({"endless_collapse over that which fits twist_collapse",
+                      v.endless_collapse / of_12_nm.collapse_at(set.radius, 0), 0.6, 1.4});
+  }
+  const auto linear = [&](const char* key, const char* what, double limit, double least, double most) {
+    if (const Quantity* q = find_quantity(set, std::string("validity.") + key))
+      ranges.push_back({what, q->value / limit, least, most});
+  };
+  linear("linear_curvature", "linear_curvature over kink_curvature", v.kink_curvature, 0.05, 0.5);
+  linear("linear_twist", "linear_twist over twist_collapse", v.twist_collapse, 0.1, 1);
+  linear("linear_stretch", "linear_stretch over stretch", v.stretch, 0.015, 0.15);
+  within(ranges, grade);
+}
+
+// The law beyond Hooke's: its window is that of the limits, and its terms say where the stiffnesses are 1 % off.
+void grade_anharmonic(const ParameterSet& set, Grade& grade) {
+  if (!set.anharmonic) return;
+  const Anharmonic& h = *set.anharmonic;
+  const Validity& v = set.validity;
+  const double r = set.radius, EA = set.bond.stretch;
+  std::vector<Range> ranges = {{"max_strain over stretch", h.max_strain / v.stretch, 0.9, 1.1},
+                               {"min_strain over -stretch", -h.min_strain / v.stretch, 0.5, 2},
+                               {"max_bend over r kink_curvature", h.max_bend / (r * v.kink_curvature), 0.9, 1.1},
+                               {"max_shear over twist_collapse", h.max_shear / v.twist_collapse, 0.7, 1.4},
+                               {"e3 over EA", h.e3 / EA, -1.5, -0.3},
+                               {"es2 over EA", h.es2 / EA, -1.2, -0.1},
+                               {"s4 over EA", h.s4 / EA, -2, -0.1},
+                               {"e4 over EA", h.e4 / EA, -3, 3},
+                               {"e2s2 over EA", h.e2s2 / EA, -5, 5}};
+  if (const Quantity* q = find_quantity(set, "validity.linear_curvature"))
+    ranges.push_back({"the loss of EI at linear_curvature, by b4,",
+                      -4 * h.b4 * std::pow(r, 4) * q->value * q->value / set.bond.bend, 0.005, 0.02});
+  if (set.pull) {
+    const double e = h.max_strain, edge = EA * e + e * e * (3 * h.e3 + 4 * h.e4 * e);
+    ranges.push_back(
+        {"the first force of the pull over that of e3 and e4", set.pull->force.front() / edge, 0.97, 1.03});
+  }
+  within(ranges, grade);
+}
+
+void grade_line(const ParameterSet& set, Grade& grade) {
+  if (!set.line) return;
+  const LineParameters& line = *set.line;
+  const LineDensity& d = line.density;
+  const double cutoff = line.universal.lj_cutoff;
+  within({{"epsilon (eV)", line.universal.epsilon, 0.001, 0.01},
+          {"sigma (nm)", line.universal.sigma, 0.25, 0.45},
+          {"lj_cutoff (nm; 0 for none)", cutoff, cutoff == 0 ? 0 : 0.7, 5},
+          {"core_gap (nm)", d.core_gap, 0.1, 0.3},
+          {"switch_gap (nm)", d.switch_gap, 0.3, 2},
+          {"cutoff_gap (nm)", d.cutoff_gap, 0.8, 5},
+          {"the gap of two tubes by pair_spacing (nm)", line.pair_spacing - 2 * set.radius, 0.25, 0.4}},
+         grade);
+  if (const double deviation = registry_deviation(set); deviation >= 0)
+    within({{"registry", deviation, 0, 0.05}}, grade);
+  agree(line_parallel_well(d).distance, line.pair_spacing, "K, s, c, p and q give two parallel tubes",
+        "nm, and pair_spacing is", grade);
+  if (!line.has_universal) return;
+  // The universal law is as good for this tube as its error says.
+  const LineDensity mixed =
+      line.universal.density(set.radius, line.surface_density, set.radius, line.surface_density);
+  within(
+      {{"the well of the universal law over that of this tube", line_parallel_well(mixed).energy / line.pair_energy,
+        1 - std::max(0.02, 3 * universal_error(set)), 1 + std::max(0.02, 3 * universal_error(set))}},
+      grade);
+}
+
 }  // namespace
 
 std::string Grade::words() const {
@@ -123,7 +232,11 @@ Grade grade_of(const ParameterSet& set) {
   grade_stiffness(set, grade);
   grade_wall(set, grade);
   grade_width(set, grade);
+  grade_shell(set, grade);
+  grade_limits(set, grade);
+  grade_anharmonic(set, grade);
   grade_contact(set, grade);
+  grade_line(set, grade);
   return grade;
 }
 

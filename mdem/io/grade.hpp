@@ -18,10 +18,11 @@ struct Grade {
   std::string words() const;  // "good", or "limited: " and the reasons
 };
 
-// good: stiffnesses known to 1 %, the line law within 1 % of the well of the surface integral, 0.5 to 2 nm wide.
-// unfit: a stiffness known to no more than a half, a wall that is not of carbon, the line law off by more than a
-// tenth of the well, or wider than 4.2 nm, where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev.
-// Lett. 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
+// good: stiffnesses known to 1 %, the line law within 1 % of the well of the surface integral, 0.5 to 2 nm wide,
+// and numbers that agree with one another: shell, limits of the model, anharmonic law, pull, well. unfit: a
+// stiffness known to no more than a half, a wall that is not of carbon, the line law off by more than a tenth of
+// the well, or wider than 4.2 nm, where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev. Lett.
+// 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
 Grade grade_of(const ParameterSet& set);
 
 // EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.

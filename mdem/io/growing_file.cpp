@@ -84,7 +84,7 @@ void GrowingFile::cut(std::uint64_t keep) {
 }
 
 void GrowingFile::sync() {
-  if (uninterrupted([&] { return ::fdatasync(file_.get()); }) != 0) fail();
+  if (!flush_to_disk(file_.get())) fail();
 }
 
 FileMark GrowingFile::mark() const {

@@ -36,7 +36,8 @@ void visit(M& m, const Visit& v) {
   v({"wall_seconds", "s", "wall time"}, m.wall_seconds);
   v({"steps", "", "time steps"}, m.steps);
   v({"time_step_fs", "fs", "time step"}, m.time_step_fs);
-  v({"status", "", "running, finished, interrupted, stopped, refined, failed or not relaxed"}, m.status);
+  v({"status", "", "running, finished, interrupted, stopped, refined, failed, not relaxed, or taken from atoms"},
+    m.status);
   v({"reason", "", "why it ended, in words; may be empty"}, m.reason);
   v({"scene", "", "name of the scene"}, m.scene);
 }

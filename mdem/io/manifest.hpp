@@ -26,7 +26,7 @@ struct Manifest {
   double wall_seconds = 0;
   std::int64_t steps = 0;
   double time_step_fs = 0;
-  std::string status;  // running, finished, interrupted, stopped, refined, failed, not relaxed
+  std::string status;  // running, finished, interrupted, stopped, refined, failed, not relaxed, taken from atoms
   std::string reason;  // in words; may be empty
   std::string scene;   // its name
 };

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <omp.h>
-#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,8 +14,7 @@
 #include <stdexcept>
 
 #include "io/stop_signals.hpp"
-
-extern char** environ;
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -32,7 +30,7 @@ pid_t start(const ProcessTask& task, int jobs) {
   forget_stop_signals();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(3);
-  omp_set_num_threads(std::max(1, omp_get_num_procs() / jobs));
+  use_threads(std::max(1, omp_get_num_procs() / jobs));
   const int code = task.work();
   std::fflush(nullptr);
   _exit(code);
@@ -63,19 +61,6 @@ void run_processes(const std::vector<ProcessTask>& tasks, int jobs, const volati
     at_work.emplace(start(task, jobs), &task);
   }
   while (!at_work.empty()) wait_for_one();
-}
-
-ProgramEnd run_program(std::vector<std::string> words) {
-  std::vector<char*> argv;
-  for (std::string& w : words) argv.push_back(w.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  int status = 0;
-  const int error = posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
-  if (error != 0) return error == ENOENT ? ProgramEnd::missing : ProgramEnd::failed;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? ProgramEnd::well : ProgramEnd::failed;
 }
 
 std::string death_words(int status) {

@@ -20,10 +20,6 @@ struct ProcessTask {
 void run_processes(const std::vector<ProcessTask>& tasks, int jobs,
                    const volatile std::sig_atomic_t* stop = nullptr);
 
-// Another program, looked for in PATH; the first word is its name. Waits for its end.
-enum class ProgramEnd { missing, failed, well };
-ProgramEnd run_program(std::vector<std::string> words);
-
 // "its process was ended by signal 9"
 std::string death_words(int status);
 

@@ -57,11 +57,15 @@ RunErrors::RunErrors(const std::string& directory, std::vector<ErrorSource> sour
 }
 
 ResultError RunErrors::of(std::size_t k, const Value& value) const {
+  return of([&](const std::vector<LogRow>& log) { return value(log.at(k)); });
+}
+
+ResultError RunErrors::of(const Result& result) const {
   ResultError out;
-  const double middle = value(log_.at(k));
+  const double middle = result(log_);
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double plus = value(runs_[i].first[k]),
-                 minus = sources_[i].minus.empty() ? 2 * middle - plus : value(runs_[i].second[k]);
+    const double plus = result(runs_[i].first),
+                 minus = sources_[i].minus.empty() ? 2 * middle - plus : result(runs_[i].second);
     const double scale = 0.5 * sources_[i].sigma / sources_[i].step;
     double part = scale * (plus - minus);
     const double bent = scale * std::fabs(plus + minus - 2 * middle);
@@ -112,6 +116,10 @@ bool has_influence(const ResultError& error, const std::vector<LogRow>& log, con
   return error.linear || (error.error > noise * largest && error.error > movement(log, value));
 }
 
+bool is_plain_name(const std::string& folder) {
+  return !folder.empty() && folder != "." && folder != ".." && folder.find('/') == std::string::npos;
+}
+
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log) {
   const std::string directory = run_directory + "/errors", path = directory + "/errors.json";
   if (!std::filesystem::exists(path)) return {};
@@ -127,6 +135,8 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
       const ErrorSource& read = sources.back();
       for (const std::string& text : {read.name, read.plus, read.minus, read.key})
         if (has_control_character(text)) throw std::runtime_error("a control character");
+      for (const std::string& folder : {read.plus, read.minus})
+        if (!folder.empty() && !is_plain_name(folder)) throw std::runtime_error("a directory elsewhere");
     }
     correlation = j.at("correlation").get<std::vector<std::vector<double>>>();
     bool square = correlation.size() == sources.size();

@@ -41,6 +41,7 @@ struct ResultError {
 class RunErrors {
  public:
   using Value = std::function<double(const LogRow&)>;
+  using Result = std::function<double(const std::vector<LogRow>&)>;  // of a log
 
   RunErrors() = default;
   // The logs of the runs are read from `directory`. Where they have other rows than `log`, the last ones are
@@ -53,6 +54,7 @@ class RunErrors {
   const std::vector<std::vector<double>>& correlation() const { return correlation_; }
   // The error of one value of row k of the log.
   ResultError of(std::size_t k, const Value& value) const;
+  ResultError of(const Result& result) const;
 
  private:
   std::vector<ErrorSource> sources_;
@@ -68,6 +70,9 @@ double movement(const std::vector<LogRow>& log, const RunErrors::Value& value);
 // Whether the parameters act on a value at all: its error is more than rounding beside the largest value in the
 // log, and more than noise where it is not linear in them.
 bool has_influence(const ResultError& error, const std::vector<LogRow>& log, const RunErrors::Value& value);
+
+// Whether it names a directory in another one, and none elsewhere.
+bool is_plain_name(const std::string& folder);
 
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);

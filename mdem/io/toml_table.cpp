@@ -1,7 +1,6 @@
 #include "io/toml_table.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cctype>
@@ -10,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+
+#include "io/toml_text.hpp"
 
 namespace ropewalk {
 namespace {
@@ -184,16 +185,9 @@ struct TomlTable::Stray {
 };
 
 TomlTable TomlTable::parse(const std::string& text, const std::string& file) {
-  try {
-    const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
-    refuse_control_characters(*root, "", file);
-    return TomlTable(std::make_shared<Node>(file, "", root, root.get()));
-  } catch (const toml::parse_error& e) {
-    const int column = static_cast<int>(e.source().begin.column);
-    throw InputError({file, static_cast<int>(e.source().begin.line), ""},
-                     "is not valid TOML: " + printable(std::string(e.description())),
-                     fmt::format("mend the line near column {}", column));
-  }
+  const auto root = std::make_shared<const toml::table>(parsed_toml(text, file));
+  refuse_control_characters(*root, "", file);
+  return TomlTable(std::make_shared<Node>(file, "", root, root.get()));
 }
 
 bool TomlTable::has(const std::string& key) const { return node_->find(key) != nullptr; }

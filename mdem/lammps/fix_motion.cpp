@@ -12,6 +12,7 @@
 #include "lammps/pair_mdem.hpp"
 #include "neighbor.h"
 #include "output.h"
+#include "scene/lammps_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
@@ -45,7 +46,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   restart_global = 1;
   comm_forward = 4;
   vector_flag = 1;
-  size_vector = 9 + 4 * static_cast<int>(model_->interaction.terms.size());
+  size_vector = lammps_row_numbers + 4 * static_cast<int>(model_->interaction.terms.size());
   global_freq = 1;
   extvector = 0;
   const auto* states = find_fix<FixStates>(lmp);
@@ -55,8 +56,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   first_skin_ = began.skin;
   first_memory_ = states->memory();
   if (comm->me == 0) {
-    work_ = began.work;
-    dissipated_ = began.dissipated;
+    account_ = {began.work, began.dissipated, began.heat};
   }
 }
 
@@ -72,6 +72,9 @@ void FixMotion::init() {
   grip_ = find_fix<FixGrip>(lmp);
   damp_ = find_fix<FixDamp>(lmp);
   engine_ = engine_of(lmp);
+  if (model_->thermostat && !engine_)
+    refuse(lmp, "[thermostat] acts through the engine, and forces are computed pair by pair",
+           "leave -var forces plain out");
   if (engine_) {
     if (first_skin_ > 0) engine_->use_skin(std::exchange(first_skin_, 0.0));
     if (!first_memory_.empty()) engine_->set_memory(std::exchange(first_memory_, {}));
@@ -229,8 +232,8 @@ std::vector<double> FixMotion::energies() const {
   if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
   const auto* pair = dynamic_cast<const PairMdem*>(force->pair);
   std::vector<double> own = {
-      bonds.stretch,        bonds.shear, bonds.bend, bonds.twist, pair ? pair->own_energy() : 0.0,
-      own_kinetic_energy(), work_,       dissipated_};
+      bonds.stretch,        bonds.shear,   bonds.bend,          bonds.twist,  pair ? pair->own_energy() : 0.0,
+      own_kinetic_energy(), account_.work, account_.dissipated, account_.heat};
   if (engine_) {
     const std::vector<TermAccount> accounts = engine_->term_accounts();
     for (std::size_t k = 0; k < accounts.size(); ++k) {
@@ -251,14 +254,13 @@ double FixMotion::compute_vector(int n) {
 
 namespace {
 struct Account {
-  double work, dissipated;
+  EnergySupply all;
   LMP::bigint carried;
 };
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const auto [work, dissipated] = account();
-  const Account all = {work, dissipated, carried_};
+  const Account all = {account(), carried_};
   const std::vector<double> memory = engine_ ? engine_->memory() : std::vector<double>();
   if (comm->me > 0) return;
   const int bytes = static_cast<int>(sizeof all + (1 + memory.size()) * sizeof(double));
@@ -272,8 +274,7 @@ void FixMotion::write_restart(FILE* file) {
 void FixMotion::restart(char* bytes) {
   Account account{};
   std::memcpy(&account, bytes, sizeof account);
-  work_ = comm->me == 0 ? account.work : 0.0;
-  dissipated_ = comm->me == 0 ? account.dissipated : 0.0;
+  account_ = comm->me == 0 ? account.all : EnergySupply();
   carried_ = account.carried;
   double count = 0;
   std::memcpy(&count, bytes + sizeof account, sizeof count);
@@ -316,23 +317,41 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
 }
 
 void FixNve::kick(double dt, double time) {
-  if (grip_) work_ += 0.5 * dt * grip_->own_power();
+  if (grip_) account_.work += 0.5 * dt * grip_->own_power();
   if (engine_ && engine_->leads()) {
-    dissipated_ += engine_->kick(dt);
+    account_.dissipated += engine_->kick(dt);
   } else {
     const double alpha = damp_ ? damp_->local() : 0.0;
-    dissipated_ += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
-    dissipated_ += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
+    account_.dissipated += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
+    account_.dissipated += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
   }
   if (!grip_) return;
-  work_ += grip_->constrain(time, dt, dt);
-  work_ += 0.5 * dt * grip_->own_power();
+  account_.work += grip_->constrain(time, dt, dt);
+  account_.work += 0.5 * dt * grip_->own_power();
 }
 
 void FixNve::initial_integrate(int) {
-  kick(0.5 * update->dt, model_->time_at(update->ntimestep - 1));
-  move(update->dt);
+  const double dt = update->dt, began = model_->time_at(update->ntimestep - 1);
+  kick(0.5 * dt, began);
+  if (model_->thermostat) {
+    move(0.5 * dt);
+    check();
+    exchange_heat(dt, began + 0.5 * dt);
+    move(0.5 * dt);
+  } else {
+    move(dt);
+  }
   check();
+}
+
+// As Simulation::exchange_heat(): the change of the kinetic energy is heat.
+void FixNve::exchange_heat(double dt, double time) {
+  const double before = own_kinetic_energy();
+  if (!engine_->leads()) engine_->take_own();
+  engine_->exchange_heat(*model_->thermostat, dt, update->ntimestep, time);
+  if (!engine_->leads()) engine_->give_own();
+  if (grip_) grip_->constrain(time, 0.0, 0.0);
+  account_.heat += own_kinetic_energy() - before;
 }
 
 void FixNve::check() const {
@@ -350,9 +369,9 @@ void FixNve::check() const {
 
 void FixNve::final_integrate() {
   if (engine_) {
-    dissipated_ += engine_->lost() - update->dt * engine_->damping_power();
+    account_.dissipated += engine_->lost() - update->dt * engine_->damping_power();
   } else if (damp_) {
-    dissipated_ -= update->dt * damp_->own_power();
+    account_.dissipated -= update->dt * damp_->own_power();
   }
   kick(0.5 * update->dt, now());
   if (output->next != update->ntimestep) return;

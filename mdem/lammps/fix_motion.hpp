@@ -11,6 +11,7 @@
 
 #include "lammps/fix_damp.hpp"
 #include "lammps/rank_engine.hpp"
+#include "sim/dynamics/energy_supply.hpp"
 #include "sim/dynamics/fire.hpp"
 
 namespace ropewalk::lammps {
@@ -28,8 +29,11 @@ class FixMotion : public LMP::Fix {
   void setup_pre_force(int vflag) override;
   void pre_force(int vflag) override;
   double compute_vector(int n) override;
-  // Work done and energy dissipated so far, eV. All ranks.
-  std::array<double, 2> account() const { return {sum_over_ranks(lmp, work_), sum_over_ranks(lmp, dissipated_)}; }
+  // So far. All ranks.
+  EnergySupply account() const {
+    return {sum_over_ranks(lmp, account_.work), sum_over_ranks(lmp, account_.dissipated),
+            sum_over_ranks(lmp, account_.heat)};
+  }
   void write_restart(FILE* file) override;
   void restart(char* bytes) override;
   int pack_forward_comm(int count, int* list, double* buffer, int, int*) override;
@@ -39,13 +43,14 @@ class FixMotion : public LMP::Fix {
   void move(double dt);  // x += v dt, q <- exp(w dt) q
   bool only_known_fixes() const;
   double now() const { return model_->time_at(update->ntimestep); }
+  double own_kinetic_energy() const;
 
   std::shared_ptr<const LammpsModel> model_;
   FixGrip* grip_ = nullptr;
   FixDamp* damp_ = nullptr;
-  RankEngine* engine_ = nullptr;      // none: plain forms
-  double work_ = 0, dissipated_ = 0;  // eV, this rank's share
-  LMP::bigint carried_ = 0;           // the step whose forces are stored with the elements
+  RankEngine* engine_ = nullptr;  // none: plain forms
+  EnergySupply account_;          // this rank's share
+  LMP::bigint carried_ = 0;       // the step whose forces are stored with the elements
 
  private:
   virtual bool engine_may_lead() const { return false; }
@@ -54,7 +59,6 @@ class FixMotion : public LMP::Fix {
   void reach_for(double skin);
   void check_elements();
   void check_masses();
-  double own_kinetic_energy() const;
   std::vector<double> energies() const;
 
   State moved_;  // buffer of move()
@@ -78,6 +82,7 @@ class FixNve : public FixMotion {
   bool engine_may_lead() const override { return only_known_fixes(); }
   void carry();  // the forces along with the elements, into the next output
   void kick(double dt, double time);
+  void exchange_heat(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check() const;
 };

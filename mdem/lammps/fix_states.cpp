@@ -57,7 +57,7 @@ class File {
     if (::ftruncate(file_, bytes) != 0) throw file_error(path_, "cannot be written", errno);
   }
   void flush() const {
-    if (::fsync(file_) != 0) throw file_error(path_, "cannot be written", errno);
+    if (!flush_to_disk(file_)) throw file_error(path_, "cannot be written", errno);
   }
 
  private:
@@ -293,9 +293,10 @@ void FixStates::write() {
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {
-    const auto [work, dissipated] = motion->account();
-    state.header.work = work;
-    state.header.dissipated = dissipated;
+    const EnergySupply account = motion->account();
+    state.header.work = account.work;
+    state.header.dissipated = account.dissipated;
+    state.header.heat = account.heat;
   }
   const auto n = static_cast<std::size_t>(atom->nlocal);
   std::vector<int> to(n);

@@ -5,6 +5,7 @@
 #include "model/error.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
+#include "sim/dynamics/stepping.hpp"
 
 namespace ropewalk {
 
@@ -21,10 +22,15 @@ LammpsModel load_lammps_model(const std::string& directory) {
   refuse_what_lammps_lacks(scene);
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
+  set_strands(dir, m.start, m.topology);
+  m.topology.groups.ends_meet = ends_meet(scene, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
   add_terms(scene, m.topology, State(static_cast<std::size_t>(m.topology.elements())), m.interaction);
   m.loads = loads_of(scene, m.topology, m.interaction);
+  Stepping stepping;
+  for (const auto& drive : scene.drives) drive->set_stepping(m.start.lineage, stepping);
+  m.thermostat = stepping.thermostat;
   m.law = scene.contact.law;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
   m.force_tolerance = scene.run.goal.force;

@@ -2,11 +2,13 @@
 // file includes no header of LAMMPS.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "scene/lammps_files.hpp"
 #include "scene/scene.hpp"
 #include "sim/dynamics/loads.hpp"
+#include "sim/dynamics/thermostat.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
 
@@ -18,6 +20,7 @@ struct LammpsModel {
   Topology topology;
   Interaction interaction;
   LoadsAndConstraints loads;
+  std::shared_ptr<const Thermostat> thermostat;  // none: no bath
   std::string law = "none";
   bool relax = false;
   double force_tolerance = 0;  // eV/nm

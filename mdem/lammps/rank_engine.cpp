@@ -201,6 +201,14 @@ void RankEngine::move(double dt) {
   }
 }
 
+// Copies change as well; their owners send them before they are read.
+void RankEngine::exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time) {
+  state_.step = step;
+  state_.time = time;
+  std::vector<double> none;
+  bath.apply(topology_, dt, state_, none);
+}
+
 double RankEngine::kinetic_energy() const {
   double sum = 0;
   for (const Segment& of : moved_)
@@ -270,7 +278,10 @@ void RankEngine::build() {
     own.push_back(owned);
   }
   topology_ = part_of_scene(model_->topology, std::move(number), std::move(own));
-  if (!ranks_) topology_.part.reset();  // it is the scene
+  if (!ranks_) {  // it is the scene
+    topology_.part.reset();
+    topology_.groups = model_->topology.groups;
+  }
   find_moved();
   if (state_.size() != order.size()) {
     state_ = State(order.size());

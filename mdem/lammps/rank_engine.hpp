@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lammps/shared.hpp"
+#include "sim/dynamics/thermostat.hpp"
 #include "sim/forces/forces.hpp"
 #include "sim/state/motion.hpp"
 
@@ -45,6 +46,8 @@ class RankEngine {
   // in it take out, eV.
   double kick(double dt);
   void move(double dt);
+  // The bath acts on the velocities of own elements during dt (ps), in the middle of this step.
+  void exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time);
   const Fastest& fastest() const { return fastest_; }  // in the last move
   double kinetic_energy() const;
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.

@@ -9,6 +9,7 @@
 #include "lammps/fix_damp.hpp"
 #include "lammps/fix_grip.hpp"
 #include "lammps/fix_motion.hpp"
+#include "lammps/fix_states.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "model/error.hpp"
 
@@ -99,7 +100,32 @@ void check_atoms(LMP::LAMMPS* lmp, const char* who) {
   check_boundary(lmp);
 }
 
+namespace {
+
+// Each style acts once; a second one would double its forces.
+template <class F>
+void check_once(LMP::LAMMPS* lmp) {
+  const LMP::Fix* first = nullptr;
+  for (int k = 0; k < lmp->modify->nfix; ++k) {
+    const LMP::Fix* fix = lmp->modify->fix[k];
+    if (!dynamic_cast<const F*>(fix)) continue;
+    if (first)
+      refuse(lmp,
+             std::string("fix ") + fix->style + " is there twice, as \"" + first->id + "\" and \"" + fix->id + "\"",
+             std::string("leave one of them: unfix ") + fix->id);
+    first = fix;
+  }
+}
+
+}  // namespace
+
 void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model) {
+  // Other integrators call other functions of a fix, or call them several times in a step.
+  if (const char* style = lmp->update->integrate_style; style && std::string(style) != "verlet")
+    refuse(lmp, std::string("run_style ") + style + " does not move elements as the model does",
+           "write: run_style verlet");
+  if (lmp->update->whichflag == 2)
+    refuse(lmp, "a minimizer of LAMMPS turns no elements", "take fix motion all mdem/relax, and run");
   int motions = 0;
   for (int k = 0; k < lmp->modify->nfix; ++k) motions += lmp->modify->fix[k]->time_integrate != 0;
   if (!find_fix<FixMotion>(lmp))
@@ -109,6 +135,9 @@ void check_styles(LMP::LAMMPS* lmp, const LammpsModel& model) {
     refuse(lmp, "more than one fix moves the elements", "leave only one of fix mdem/nve and fix mdem/relax");
   if (!dynamic_cast<BondVBond*>(lmp->force->bond))
     refuse(lmp, "elements of a tube are not bonded", "write: bond_style mdem/vbond DIR and bond_coeff *");
+  check_once<FixGrip>(lmp);
+  check_once<FixDamp>(lmp);
+  check_once<FixStates>(lmp);
   const bool contact = dynamic_cast<PairMdem*>(lmp->force->pair) != nullptr;
   if (model.interaction.has_contact() && !contact)
     refuse(lmp, "the scene has contact, and there is none",

@@ -111,7 +111,7 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
       {"pressure_GPa", "GPa", units::nN_nm, &Limits::pressure, "the tube is pressed from all sides by",  // nN/nm^2
        "a real tube flattens there", "load it less, or do not trust its shape from now on", false},
       {"energy_drift", "", 1, &Limits::energy_drift,
-       "the account of energy is off, over the energy that has moved, by",
+       "the energy balance is off, over the energy that has moved, by",
        "the steps themselves give or take energy", "take a shorter run.time_step_fs, or no step of your own", false,
        true},
       {"shock", "", 1, &Limits::shock, "the kinetic energy, over the energy of twist under the whole moment, is",

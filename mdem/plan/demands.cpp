@@ -60,8 +60,8 @@ double DemandsAhead::Range::farthest(double more) const {
   return std::max(std::fabs(low + more), std::fabs(high + more));
 }
 
-DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p)
-    : law_(p.topology.types[0]), bond_(p.topology.types[0].bond), drives_(end_drives(p.loads, p.topology)) {
+DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t type)
+    : law_(p.topology.types[type]), bond_(p.topology.types[type].bond), drives_(end_drives(p.loads, p.topology)) {
   tubes_ = p.topology.tubes();
   for (const End end : {lower_end, upper_end})
     for (std::size_t axis = 0; axis < 6; ++axis) loads_[end][axis] = load_of_each(drives_, end, axis);
@@ -79,7 +79,7 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p)
     if (const auto effect = load->effect(); effect && end_drives(*load, p.topology).empty())
       inner_.push_back(*effect);
   if (scene.start.temperature > 0) {
-    const double kt = units::boltzmann * scene.start.temperature, a = p.topology.types[0].element_length;
+    const double kt = units::boltzmann * scene.start.temperature, a = p.topology.types[type].element_length;
     warm_curvature_ = std::sqrt(kt / (bond_.bend * a));
     warm_twist_ = std::sqrt(kt / (bond_.twist * a));
   }

@@ -25,7 +25,8 @@ struct Demands {
 
 class DemandsAhead {
  public:
-  DemandsAhead(const Scene& scene, const Prepared& prepared);
+  // `type`: of which tubes.
+  DemandsAhead(const Scene& scene, const Prepared& prepared, std::size_t type = 0);
 
   Demands at(double time) const;                               // at 0: of the start alone
   const std::vector<double>& times() const { return times_; }  // ps: 0, the corners of all courses, and in between

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "plan/demands.hpp"
 #include "plan/features.hpp"
@@ -29,7 +30,9 @@ double expected(const Demands& f, const TubeType& type, double Limits::*limit) {
 std::string gentle_ramp(const Prepared& p, double part) {
   const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
   if (!load || !(load->rate() > 0)) return "ramp the moment";
-  return fmt::format("a ramp of {:.2g} nN nm/ps would be gentle", load->rate() * std::sqrt(part) / units::nN_nm);
+  const double rate = load->rate() * std::sqrt(part);
+  return fmt::format("a ramp of {:.2g} nN nm/ps, over {:.3g} ps, would be gentle", rate / units::nN_nm,
+                     load->largest() / rate);
 }
 
 // By length: 1 where a strand is one tube.
@@ -107,15 +110,35 @@ Ahead ahead_of(const DemandsAhead& demands, const TubeType& type, double Limits:
   return out;
 }
 
+std::vector<std::size_t> types_with_tubes(const Topology& topology) {
+  const std::set<int> all(topology.tube_type.begin(), topology.tube_type.end());
+  return {all.begin(), all.end()};
+}
+
 }  // namespace
 
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
-  const DemandsAhead demands(scene, p);
-  const Limits limits = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits.front();
+  const std::vector<Limits> limits = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits;
+  const std::vector<std::size_t> types = types_with_tubes(p.topology);
+  std::vector<DemandsAhead> demands;
+  for (const std::size_t type : types) demands.emplace_back(scene, p, type);
   for (const LimitKind& kind : limit_kinds()) {
-    const double limit = limits.*kind.limit;
+    // The type that the scene brings farthest beyond its limit.
+    Ahead ahead;
+    std::size_t type = types.front();
+    for (std::size_t k = 0; k < types.size(); ++k) {
+      const double here = limits[types[k]].*kind.limit;
+      if (here <= 0 || kind.limit == &Limits::shock) continue;
+      const Ahead of_type = ahead_of(demands[k], p.topology.types[types[k]], kind.limit, here);
+      if (k > 0 && !(of_type.largest / here > ahead.largest / (limits[type].*kind.limit))) continue;
+      ahead = of_type;
+      type = types[k];
+    }
+    const double limit = limits[type].*kind.limit;
     if (limit <= 0) continue;
+    const std::string what =
+        types.size() > 1 ? fmt::format("{} of {}", kind.key, scene.sets[type].name) : std::string(kind.key);
     const std::string unit = *kind.unit ? " " + std::string(kind.unit) : "";
     const auto number = [&](double value) { return fmt::format("{:.3g}{}", value / kind.unit_size, unit); };
     const std::string beyond =
@@ -126,18 +149,17 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
                                   gentle_ramp(p, limit / shock)));
       continue;
     }
-    const Ahead ahead = ahead_of(demands, p.topology.types[0], kind.limit, limit);
     if (!(ahead.largest > limit)) continue;
     constexpr double more = 1.02;
     if (ahead.start > limit)
-      out.push_back(fmt::format("The scene begins with {} at {}{}, {}; {}.", kind.key, number(ahead.start),
+      out.push_back(fmt::format("The scene begins with {} at {}{}, {}; {}.", what, number(ahead.start),
                                 ahead.largest > more * ahead.start
                                     ? fmt::format(", and the load may bring it to {}", number(ahead.largest))
                                     : std::string(),
                                 beyond, kind.remedy));
     else
       out.push_back(fmt::format(
-          "The load may bring {} to {}{}, {}; {}.", kind.key, number(ahead.largest),
+          "The load may bring {} to {}{}, {}; {}.", what, number(ahead.largest),
           ahead.passes > at_once ? fmt::format(", from about {:.3g} ps on", ahead.passes) : std::string(), beyond,
           kind.remedy));
   }

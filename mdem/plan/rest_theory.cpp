@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
@@ -22,7 +23,7 @@ double pair_stiffness(const ContactLaw& law, double element_length) {
 }
 
 [[noreturn]] void refuse(const Scene& scene, const char* key, const char* why) {
-  throw InputError({scene.path, 0, key}, why,
+  throw InputError(place_in(scene, key), why,
                    "take a [rope] of 7 tubes or more with a couple on each tube at both ends, which are free "
                    "otherwise, as [twist] "
                    "of `ropewalk new --kind spindle` has it");

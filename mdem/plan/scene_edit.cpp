@@ -1,13 +1,13 @@
 #include "plan/scene_edit.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <cstring>
 #include <initializer_list>
 #include <optional>
 #include <vector>
 
+#include "io/toml_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -163,7 +163,7 @@ std::string with_key(const std::string& text, const std::string& table, const st
 
 std::string with_value(const std::string& text, const std::string& path, const std::string& value,
                        const std::string& file) {
-  const toml::table top = toml::parse(text, file);
+  const toml::table top = parsed_toml(text, file);
   const std::vector<std::string> parts = parts_of(path);
   const toml::node* node = &top;
   std::size_t depth = 0;
@@ -195,7 +195,7 @@ std::string with_value(const std::string& text, const std::string& path, const s
 }
 
 double number_at(const std::string& text, const std::string& path, const std::string& file) {
-  const toml::table top = toml::parse(text, file);
+  const toml::table top = parsed_toml(text, file);
   const std::vector<std::string> parts = parts_of(path);
   const toml::node* node = &top;
   for (std::size_t depth = 0; depth < parts.size() && node; ++depth) node = child(*node, parts, depth, path, file);

@@ -13,17 +13,25 @@ Frame turned(double bend, double twist) {
   return {r.col(0), r.col(1), r.col(2)};
 }
 
-// The first x from zero towards `most` at which a function of the sign of x has risen to `wanted`, which has that
-// sign.
+// Where a function whose slope is about `stiffness` near zero has no value: the other load moves it away from zero.
 template <class F>
-double first_reached(const F& of, double wanted, double by_hooke, double most) {
-  if (wanted == 0) return 0;
+double at_rest(const F& of, double stiffness) {
+  double x = 0;
+  for (int k = 0; k < 20; ++k) x -= of(x) / stiffness;
+  return x;
+}
+
+// The first x from where the function is zero, towards `most` on the side of the sign of `wanted`, at which it has
+// risen to `wanted`.
+template <class F>
+double first_reached(const F& of, double wanted, double stiffness, double most) {
   constexpr int parts = 8, most_parts = 4000;
-  const double side = std::copysign(1.0, wanted);
-  double low = 0;
+  const double side = std::copysign(1.0, wanted), from = at_rest(of, stiffness);
+  if (wanted == 0) return from;
+  double low = from;
   for (int k = 1; k <= most_parts; ++k) {
-    double high = by_hooke * k / parts;
-    if (std::fabs(high) >= most) return side * most;
+    double high = from + wanted / stiffness * k / parts;
+    if (!(side * high < most)) return side * most;
     if (side * of(high) < std::fabs(wanted)) {
       low = high;
       continue;
@@ -62,17 +70,16 @@ double TubeLaw::moment(double curvature) const {
 }
 
 double TubeLaw::strain_under(double tension_, double twist) const {
-  return first_reached([&](double e) { return tension(e, twist); }, tension_, tension_ / bond_.stretch, 1);
+  return first_reached([&](double e) { return tension(e, twist); }, tension_, bond_.stretch, 1);
 }
 
 double TubeLaw::twist_under(double torque_, double strain) const {
-  return first_reached([&](double tau) { return torque(strain, tau); }, torque_, torque_ / bond_.twist,
-                       largest_twist());
+  return first_reached([&](double tau) { return torque(strain, tau); }, torque_, bond_.twist, largest_twist());
 }
 
 double TubeLaw::curvature_under(double moment_) const {
-  return first_reached([&](double kappa) { return moment(kappa); }, std::fabs(moment_),
-                       std::fabs(moment_) / bond_.bend, 0.5 * units::pi / length_);
+  return first_reached([&](double kappa) { return moment(kappa); }, std::fabs(moment_), bond_.bend,
+                       0.5 * units::pi / length_);
 }
 
 }  // namespace ropewalk

@@ -19,8 +19,8 @@ class TubeLaw {
   double moment(double curvature) const;
 
   // Where the tube bears this load, the other one given: the state that a load which grows from zero comes to
-  // first. Where the tube does not bear it at all, the largest value that is looked at: a strain of 1, or a bond
-  // that is twisted or bent by 90 degrees.
+  // first. Without the load that is where the other one leaves the tube. Where the tube does not bear it at all,
+  // the largest value that is looked at: a strain of 1, or a bond that is twisted or bent by 90 degrees.
   double strain_under(double tension, double twist) const;
   double twist_under(double torque, double strain) const;
   double curvature_under(double moment) const;  // never negative

@@ -1,9 +1,8 @@
 #include "python/module.hpp"
 
-#include <omp.h>
-
 #include "io/data_files.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 #include "version.hpp"
 
 PYBIND11_MODULE(_core, m) {
@@ -12,8 +11,9 @@ PYBIND11_MODULE(_core, m) {
   m.attr("git_id") = git_id;
   m.def("set_data_directory", set_data_directory, pybind11::arg("folder"));
   m.def("data_directory", data_directory);
-  m.def("threads", omp_get_max_threads);
-  m.def("set_threads", omp_set_num_threads, pybind11::arg("threads"));
+  m.attr("most_threads") = most_threads;
+  m.def("threads", threads_in_use);
+  m.def("set_threads", use_threads, pybind11::arg("threads"));
   m.def("instructions", instructions_in_use);
   python::bind_errors(m);
   python::bind_observables(m);

@@ -4,6 +4,7 @@
 #include "io/grade.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
+#include "io/log_mean.hpp"
 #include "io/manifest.hpp"
 #include "io/parameters_toml.hpp"
 #include "python/arrays.hpp"
@@ -24,6 +25,15 @@ void bind_run_files(py::module_& m) {
       for (py::ssize_t c = 0; c < columns; ++c)
         values(r, c) = rows[static_cast<std::size_t>(r)].values()[static_cast<std::size_t>(c)];
     return out;
+  });
+  // Of values at these times (ps): mean, error, correlation time and the time needed for an error (ps).
+  m.def("mean_over_time", [](const std::vector<double>& times, const std::vector<double>& values) {
+    std::vector<LogRow> log(times.size());
+    const std::size_t any = index_of_observable("kinetic_eV");
+    for (std::size_t k = 0; k < times.size(); ++k)
+      log[k]["time_ps"] = times[k], log[k].values()[any] = values.at(k);
+    const LogMean mean = mean_of_last(log.size(), log, [any](const LogRow& row) { return row.values()[any]; });
+    return py::make_tuple(mean.value, mean.error, mean.correlation_ps, mean.needed_ps);
   });
   // The frames of a run: GSD or the text dump, whichever is there.
   m.def("frames_file", [](const std::string& directory) { return RunDirectory{directory}.frames(); });

@@ -1,7 +1,6 @@
 // Runs in this process, as `ropewalk run` and `resume` do them: the same files, stop reasons and messages.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 
 #include <cmath>
 #include <cstdint>
@@ -11,8 +10,8 @@
 #include "python/own_force.hpp"
 #include "python/scene.hpp"
 #include "run/begin_run.hpp"
-#include "run/threads.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk::python {
 namespace {
@@ -76,14 +75,13 @@ class PythonListener : public RunListener {
   std::optional<py::error_already_set> raised_;
 };
 
-// The instruction set is one for all of a process.
 struct InstructionsAsBefore {
-  std::vector<std::string> before = instruction_sets();
-  ~InstructionsAsBefore() { use_instructions(before.size() == 1 ? before.front() : ""); }
+  VectorUnit before = vector_unit_in_use();
+  ~InstructionsAsBefore() { use_vector_unit(before); }
 };
 
 struct ThreadsAsBefore {
-  int before = omp_get_max_threads();
+  int before = threads_in_use();
   ~ThreadsAsBefore() { use_threads(before); }
 };
 
@@ -105,8 +103,9 @@ Settings settings_of(const Asked& a) {
     throw InputError({"", 0, "steps"}, fmt::format("is {}", *a.steps), "take a whole number from 0");
   if (a.until_ps && !(*a.until_ps >= 0 && std::isfinite(*a.until_ps)))
     throw InputError({"", 0, "until_ps"}, fmt::format("is {}", *a.until_ps), "take a time from 0");
-  if (a.threads && (*a.threads < 1 || *a.threads > 1024))
-    throw InputError({"", 0, "threads"}, fmt::format("is {}", *a.threads), "take a whole number from 1 to 1024");
+  if (a.threads && (*a.threads < 1 || *a.threads > most_threads))
+    throw InputError({"", 0, "threads"}, fmt::format("is {}", *a.threads),
+                     fmt::format("take a whole number from 1 to {}", most_threads));
   if (a.wall_time_s && !(*a.wall_time_s > 0 && std::isfinite(*a.wall_time_s)))
     throw InputError({"", 0, "wall_time_s"}, fmt::format("is {}", *a.wall_time_s), "take a time above 0");
   Settings s;

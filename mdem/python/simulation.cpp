@@ -12,6 +12,7 @@
 #include "python/arrays.hpp"
 #include "run/moving_scene.hpp"
 #include "run/run_checkpoint.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/single_state.hpp"
 #include "scene/state_files.hpp"
@@ -45,11 +46,13 @@ SteppedScene::SteppedScene(std::shared_ptr<const Model> model, std::vector<std::
 }
 
 SteppedScene::StepGuard::StepGuard(SteppedScene& of) : of(of) {
-  if (of.stepping_.exchange(true)) throw std::runtime_error("the simulation is at work in another thread");
+  if (of.stepping_.exchange(true))
+    throw std::runtime_error("the simulation is at work in another thread, or calls this function itself");
 }
 
 const Simulation& SteppedScene::simulation() const {
-  if (stepping_) throw std::runtime_error("the simulation is at work in another thread");
+  if (stepping_)
+    throw std::runtime_error("the simulation is at work in another thread, or calls this function itself");
   return simulation_;
 }
 
@@ -170,7 +173,7 @@ void SteppedScene::drive(std::shared_ptr<const Scene> as) {
   const Scene& scene = as ? *as : model_->scene;
   LoadsAndConstraints loads = loads_of(scene, s.topology(), s.interaction());
   if (ends_of(loads, s.topology()) != ends_of(model_->prepared.loads, s.topology()))
-    throw InputError({scene.path, 0, "grip"}, "is on other elements than before",
+    throw InputError(place_in(scene, "grip"), "is on other elements than before",
                      "a clamp stays where it is; let go of it by \"free\" for each of its axes");
   for (const auto& force : own_) OwnForce::add_load(force, loads);
   simulation_.use_loads(std::move(loads));
@@ -184,7 +187,7 @@ void SteppedScene::drive(std::shared_ptr<const Scene> as) {
 
 void SteppedScene::drive(const SceneHandle& as) {
   if (as.scene().has_ends(Drive::Ends::endless))
-    throw InputError({as.scene().path, 0, "periodic"}, "stays as it is while a simulation runs",
+    throw InputError(place_in(as.scene(), "periodic"), "stays as it is while a simulation runs",
                      "make a simulation of the other scene");
   const Simulation& s = simulation();
   const LoadsAndConstraints loads = loads_of(as.scene(), s.topology(), s.interaction());

@@ -76,8 +76,15 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
   const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1; };
   if (std::any_of(groups.begin(), groups.end(), one_seed))
     chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
-  if (x != "beta_deg" || !kind.yarn_law) return scatter;
   const std::vector<ChartLine> measured = chart.lines;
+  for (const auto& [level, name] : kind.levels) {
+    ChartLine line{name, {}, {}, 5, true};
+    for (const ChartLine& other : measured) line.x.insert(line.x.end(), other.x.begin(), other.x.end());
+    std::sort(line.x.begin(), line.x.end());
+    line.y.assign(line.x.size(), level);
+    chart.lines.push_back(line);
+  }
+  if (x != "beta_deg" || !kind.yarn_law) return scatter;
   for (const ChartLine& line : measured) {
     if (line.x.size() < 2) continue;
     ChartLine law{&line == &measured.front() ? "cos²" : "", {}, {}, line.colour, true};

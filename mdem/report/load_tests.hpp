@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/outputs.hpp"
@@ -28,11 +29,12 @@ struct LoadTestGroup {
 
 struct LoadTestKind {
   const char* heading;
-  const char* words;                  // HTML above the table
-  const char* drawn;                  // what the first column is, in a figure
-  const char* unit;                   // of the first column
-  std::vector<OutputColumn> columns;  // the first is drawn
-  bool yarn_law = false;              // over beta_deg with cos^2 of that angle
+  const char* words;                                        // HTML above the table
+  const char* drawn;                                        // what the first column is, in a figure
+  const char* unit;                                         // of the first column
+  std::vector<OutputColumn> columns;                        // the first is drawn
+  bool yarn_law = false;                                    // over beta_deg with cos^2 of that angle
+  std::vector<std::pair<double, std::string>> levels = {};  // to compare the first column with, and their names
 };
 
 // Columns: run, replicates, to_half, --x, then each of the kind with its standard error, then limit_columns() of

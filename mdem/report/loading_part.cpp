@@ -128,7 +128,7 @@ Panel shares(const std::vector<LogRow>& log) {
     };
   };
   return {"Shares of the stored energy",
-          "What holds the stored energy, in per cent of it.",
+          "Shares of the stored energy, in per cent.",
           {"share", "%", false},
           {{"stretch", share("stored_stretch_MJ_per_kg"), 2},
            {"bend", share("stored_bend_MJ_per_kg"), 0},

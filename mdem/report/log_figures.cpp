@@ -19,6 +19,13 @@ LogValue logged(const std::string& column) {
   return [k = index_of_observable(column)](const LogRow& row) { return row.values()[k]; };
 }
 
+double error_of(const ReportInput& in, std::size_t row, const LogValue& value) {
+  if (!in.whole.empty()) return in.whole.of(row, value).total();
+  if (in.errors.empty()) return 0;
+  const ResultError e = in.errors.of(row, value);
+  return std::hypot(e.error, e.potential);
+}
+
 double total_energy(const LogRow& r) { return potential_energy(r) + r["kinetic_eV"]; }
 
 Clock clock_of(const std::vector<LogRow>& log) {
@@ -75,9 +82,10 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);
     if (within < x.size()) line.beyond = within;
-    for (std::size_t k = 0; (trace.half_width || !in.errors.empty()) && k < in.log.size(); ++k) {
-      const ResultError e = in.errors.empty() ? ResultError{} : in.errors.of(k, trace.value);
-      line.error.push_back(std::hypot(e.error, e.potential, trace.half_width ? trace.half_width(in.log[k]) : 0));
+    const bool known = !in.errors.empty() || !in.whole.empty();
+    for (std::size_t k = 0; (trace.half_width || known) && k < in.log.size(); ++k) {
+      const double carried = error_of(in, k, trace.value);
+      line.error.push_back(std::hypot(carried, trace.half_width ? trace.half_width(in.log[k]) : 0));
     }
     chart.lines.push_back(std::move(line));
   }

@@ -40,6 +40,8 @@ struct Clock {
 };
 Clock clock_of(const std::vector<LogRow>& log);
 
+// All that is known of the error of a value in this row of the log; 0: nothing is.
+double error_of(const ReportInput& in, std::size_t row, const LogValue& value);
 double total_energy(const LogRow& r);  // eV
 std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value);
 

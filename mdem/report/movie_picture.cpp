@@ -50,9 +50,8 @@ std::string movie_picture(const RopeView& view, const MovieStage& stage, const s
       "y=\"{4:.1f}\" "
       "fill=\"var(--ink)\">{5:g} nm</text>\n",
       edge, y, bar * c.scale, edge + bar * c.scale + 8, y + 4, bar);
-  if (c.moment_eV > 0)
-    body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", stage.width - 440.0, y - 10) +
-            moment_bar(c.moment_eV).substr(4);
+  if (c.coloured())
+    body += fmt::format("<svg x=\"{:.1f}\" y=\"{:.1f}\"", stage.width - 440.0, y - 10) + colour_bar(c).substr(4);
   return svg_file(body, stage.width, stage.height);
 }
 

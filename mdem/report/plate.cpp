@@ -58,6 +58,7 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   for (std::size_t k = 0; k < columns.size(); ++k) {
     chart.lines.push_back(
         {name_of(columns[k]), x, values_of(in.log, logged(columns[k])), static_cast<int>(k) % categorical_colours});
+    if (!in.errors.empty()) chart.lines.back().error = values_of(in.errors, logged(columns[k]));
     scatter.labels.emplace_back();
   }
   // The states, on the first curve.
@@ -129,8 +130,8 @@ std::string plate_svg(const PlateInput& input) {
     }
     y += tag_height + row + gap;
   }
-  if (in.camera.moment_eV > 0) {
-    const std::string bar = moment_bar(in.camera.moment_eV);
+  if (in.camera.coloured()) {
+    const std::string bar = colour_bar(in.camera);
     body += placed(bar, margin, y);
     y += height_of(bar) + gap;
   }

@@ -16,6 +16,7 @@ struct PlateInput {
   RopeShells shells;
   double tube_radius = 0;
   std::vector<LogRow> log;
+  std::vector<LogRow> errors;  // of its rows, drawn as bands; empty: not known
   // Charts below, each with one column or more of the same unit; empty: none.
   std::vector<std::vector<std::string>> curves;
   std::string x;  // a column of the log, over which the charts are drawn; empty: time

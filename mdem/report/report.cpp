@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 
+#include "io/log_mean.hpp"
 #include "report/loading_part.hpp"
 #include "report/log_figures.hpp"
 #include "report/page.hpp"
@@ -241,8 +242,8 @@ std::string views_figure(const ReportInput& in, Figures& figures) {
   html += "</div>\n";
   if (std::any_of(views.begin(), views.end(), [](const RopeView& v) { return !v.links.empty(); }))
     caption += " Red: links, where they can be seen.";
-  if (camera.moment_eV > 0) {
-    html += moment_bar(camera.moment_eV);
+  if (camera.coloured()) {
+    html += colour_bar(camera);
     caption +=
         " Colour: modulus of the bending moment of the tube; the scale ends where 99.5 % of the elements lie "
         "below.";
@@ -307,6 +308,7 @@ std::string ending(const ReportInput& in) {
   while (!reason.empty() && reason.back() == '.') reason.pop_back();
   if (in.status == "finished")
     return (reason.empty() ? "The run finished as planned" : "The run finished" + reason) + ".";
+  if (in.status == "taken from atoms") return "Its elements were taken from atoms" + reason + ".";
   if (in.status == "interrupted") return "The run was interrupted" + reason + ". This page shows it up to there.";
   if (in.status == "not relaxed") return "The relaxation did not come to rest" + reason + ".";
   if (in.status == "stopped")
@@ -474,9 +476,44 @@ std::string refinements_part(const std::vector<RefinementRecord>& refinements) {
   return html + "</ul>\n";
 }
 
-// The table of `ropewalk errors`, with the bands that the charts have.
+// The table of `ropewalk errors --numerics`, with the bands that the charts have.
+std::string whole_errors(const ReportInput& in) {
+  const NumericRuns& runs = in.whole.runs();
+  std::string html = paragraph(
+      "The whole error of each result, and what decides it: statistics, the scatter of runs from other starts with "
+      "other "
+      "random numbers; numerics, from runs with half the element length, half the time step and half the rate of "
+      "all that is prescribed; parameters, the standard errors of the inputs; and potential, by how far four "
+      "potentials of "
+      "carbon lie apart. The bands of the charts are all of them together; errors-statistics.csv, "
+      "errors-numerics.csv, "
+      "errors.csv and errors-potential.csv have every row. What the model itself leaves out is not in them.");
+  std::vector<ReportFact> facts;
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    const Observable& o = observables()[k];
+    if (o.group == ObservableGroup::time || o.name == "time_step_fs") continue;
+    const WholeError e = in.whole.at_end([k](const LogRow& row) { return row.values()[k]; });
+    if (!std::isfinite(e.value) || e.total() <= 1e-9 * std::max(1.0, std::fabs(e.value))) continue;
+    std::string remark = fmt::format("statistics {}, numerics {}{}, parameters {}, potential {}; {} decides",
+                                     number_text(e.statistics, 2), e.bound ? "≤ " : "", number_text(e.numerics, 2),
+                                     number_text(e.parameters, 2), number_text(e.potential, 2), e.decides);
+    if (std::isfinite(e.correlation_ps))
+      remark += fmt::format("; correlated over {}", picoseconds(e.correlation_ps));
+    facts.push_back({o.name, fmt::format("{} {}", measured_text(e.value, e.total()), o.unit), remark});
+  }
+  html += facts_part(facts);
+  std::string words;
+  for (const NumericSource& s : runs.sources) words += fmt::format("{}: {}. ", s.name, s.change);
+  for (const std::string& why : runs.remarks) words += fmt::format("{}. ", why);
+  if (runs.mean_ps > 0) words += fmt::format("Values are means over the last {} ps.", number_text(runs.mean_ps, 4));
+  return html + paragraph(escape_markup(words));
+}
+
+// The table of `ropewalk errors`, likewise.
 std::string carried_errors(const ReportInput& in) {
-  if (in.errors.empty() || in.log.empty()) return "";
+  if (in.log.empty()) return "";
+  if (!in.whole.empty()) return whole_errors(in);
+  if (in.errors.empty()) return "";
   std::string names;
   for (const ErrorSource& source : in.errors.sources())
     names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
@@ -505,14 +542,30 @@ std::string carried_errors(const ReportInput& in) {
   return html + facts_part(facts);
 }
 
+// The mean over the last half of the log with its error, and its correlation time. `needed`: ps, the longest time
+// that a value without an error needs.
+std::string mean_cells(const std::vector<LogRow>& log, const std::string& column, double& needed) {
+  const LogMean mean = mean_of_last((log.size() + 1) / 2, log, logged(column));
+  needed = std::max(needed, mean.needed_ps);
+  const bool known = std::isfinite(mean.error) && mean.error > 0;
+  return "<td class=\"number\">" + (known ? measured_text(mean.value, mean.error) : std::string("–")) +
+         "</td><td class=\"number\">" + (known ? number_text(mean.correlation_ps, 2) : std::string("–")) + "</td>";
+}
+
 // The columns of the log, also those that no chart shows, but for those that are zero or nan all the time.
-std::string observables_part(const std::vector<LogRow>& log) {
+std::string observables_part(const ReportInput& in) {
+  const std::vector<LogRow>& log = in.log;
   if (log.empty()) return paragraph("The log has no rows, so nothing is known.");
+  const bool timed = log.size() > 2 && !clock_of(log).counts_steps();
   std::string html =
       "<div class=\"scroll\"><table class=\"facts\"><thead><tr><th>Column of log.csv</th><th>Unit</th><th "
       "class=\"number\">Start</th><th class=\"number\">End</th><th class=\"number\">Smallest</th><th "
-      "class=\"number\">Largest</th><th>Meaning</th></tr></thead><tbody>\n";
+      "class=\"number\">Largest</th>" +
+      std::string(timed ? "<th class=\"number\">Mean of the last half</th><th class=\"number\">Correlated, ps</th>"
+                        : "") +
+      "<th>Meaning</th></tr></thead><tbody>\n";
   std::string zero;
+  double needed = 0;
   for (const Observable& o : observables()) {
     std::vector<double> values = values_of(log, logged(o.name));
     if (std::none_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v != 0; })) {
@@ -520,6 +573,7 @@ std::string observables_part(const std::vector<LogRow>& log) {
       continue;
     }
     const double start = values.front(), end = values.back();
+    const double error = o.group == ObservableGroup::time ? 0 : error_of(in, log.size() - 1, logged(o.name));
     values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
                  values.end());
     const auto number = [&](double v) {
@@ -528,10 +582,19 @@ std::string observables_part(const std::vector<LogRow>& log) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     html += "<tr><th>" + escape_markup(o.name) + "</th><td>" + escape_markup(o.unit) + "</td>" + number(start) +
-            number(end) + number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
-            "<td class=\"soft\">" + escape_markup(o.meaning) + "</td></tr>\n";
+            (error > 0 ? "<td class=\"number\">" + measured_text(end, error) + "</td>" : number(end)) +
+            number(values.empty() ? none : *low) + number(values.empty() ? none : *high) +
+            (timed ? mean_cells(log, o.name, needed) : "") + "<td class=\"soft\">" + escape_markup(o.meaning) +
+            "</td></tr>\n";
   }
   html += "</tbody></table></div>\n";
+  if (timed)
+    html += paragraph(fmt::format(
+        "A mean stands where the last half of the run has enough independent values for its error; a value that "
+        "drifts "
+        "has none.{}",
+        needed > 0 ? fmt::format(" The others would need up to {} ps that are like these.", number_text(needed, 2))
+                   : ""));
   return zero.empty() ? html
                       : html + "<p class=\"soft\">Zero, or without a value, in all rows: " + zero + ".</p>\n";
 }
@@ -602,10 +665,10 @@ std::string report_html(const ReportInput& in) {
   html += log_part(in, sections, figures);
   html += "<a id=\"limits\"></a>" + heading("Beyond the limits of the model") + limits_part(in);
   html += refinements_part(in.watched.refinements);
-  if (!in.error_bars.empty() || !in.errors.empty()) html += heading("Error bars");
+  if (!in.error_bars.empty() || !in.errors.empty() || !in.whole.empty()) html += heading("Error bars");
   html += carried_errors(in);
   for (const std::string& words : in.error_bars) html += paragraph(escape_markup(words));
-  html += heading("All observables") + observables_part(in.log);
+  html += heading("All observables") + observables_part(in);
   html += heading("The run") + facts_part(in.facts);
   html += heading("Parameters") + parameters_part(in.parameter_name, in.parameter_reference, in.parameters);
   return html + "</main>\n</body>\n</html>\n";

@@ -7,6 +7,7 @@
 #include "io/equilibria.hpp"
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
+#include "io/numeric_errors.hpp"
 #include "io/run_errors.hpp"
 #include "io/run_results.hpp"
 #include "model/parameters.hpp"
@@ -41,6 +42,7 @@ struct ReportInput {
 
   std::vector<LogRow> log;
   RunErrors errors;           // empty: not known
+  NumericErrors whole;        // with those above in it; empty: not known
   double ramp_end_ps = 0;     // end of the loading stage; 0: no such stage
   double tube_radius = 0;     // nm
   double spacing = 0;         // nm

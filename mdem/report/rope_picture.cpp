@@ -21,7 +21,7 @@ namespace ropewalk {
 namespace {
 
 constexpr std::size_t max_bytes_in_page = 60000, max_bytes_of_file = 250000;
-constexpr int moment_colours = 12;
+constexpr int rope_colours = 12;
 constexpr double reach = 1.28;           // half the stroke behind a tube, radii: closes the gap to its neighbour
 constexpr double layer_thickness = 1.2;  // radii
 constexpr double overlap = 0.25;         // of two pieces of a tube, radii
@@ -46,7 +46,7 @@ struct Seen {
 struct Segment {
   Seen a, b;
   std::size_t element;  // where a is
-  double moment;
+  double value;         // that it is coloured by
   bool visible;
   int size = 0;  // of the tube, an index of sizes_of()
 };
@@ -63,11 +63,11 @@ std::vector<double> sizes_of(const RopeView& view, double radius) {
 
 Seen see(const RopeCamera& c, const Vector3& p) { return {p.dot(c.right), p.dot(c.up), p.dot(c.towards)}; }
 
-double mean_moment(const std::vector<double>& moments, std::size_t begin, std::size_t end) {
+double mean_value(const std::vector<double>& values, std::size_t begin, std::size_t end) {
   double sum = 0;
   std::size_t n = 0;
-  for (std::size_t i = begin; i <= end && i < moments.size(); ++i)
-    if (std::isfinite(moments[i])) sum += std::abs(moments[i]), ++n;
+  for (std::size_t i = begin; i <= end && i < values.size(); ++i)
+    if (std::isfinite(values[i])) sum += values[i], ++n;
   return n > 0 ? sum / static_cast<double>(n) : 0;
 }
 
@@ -99,11 +99,11 @@ std::vector<SeenTube> seen_tubes(const RopeView& view, const std::vector<double>
 }
 
 // Every segment gets the mean of its block of elements.
-void set_moments(std::vector<SeenTube>& tubes, const RopeView& view, std::size_t block) {
-  for (std::size_t t = 0; t < std::min(tubes.size(), view.bending_moment_eV.size()); ++t)
+void set_values(std::vector<SeenTube>& tubes, const RopeView& view, std::size_t block) {
+  for (std::size_t t = 0; t < std::min(tubes.size(), view.colour.size()); ++t)
     for (Segment& s : tubes[t]) {
       const std::size_t begin = s.element / block * block;
-      s.moment = mean_moment(view.bending_moment_eV[t], begin, begin + block);
+      s.value = mean_value(view.colour[t], begin, begin + block);
     }
 }
 
@@ -254,8 +254,8 @@ struct Painter {
   int layer_of(double depth) const { return static_cast<int>(std::floor(depth / (layer_thickness * radius))); }
   Key key(const Segment& s) const {
     const int layer = layer_of(0.5 * (s.a.depth + s.b.depth));
-    const double at = camera.moment_eV > 0 ? s.moment / camera.moment_eV : 0;
-    return {layer, s.size, std::min(moment_colours - 1, static_cast<int>(std::min(at, 1.0) * moment_colours))};
+    const double at = camera.coloured() ? (s.value - camera.least) / (camera.most - camera.least) : 0;
+    return {layer, s.size, std::min(rope_colours - 1, static_cast<int>(std::clamp(at, 0.0, 1.0) * rope_colours))};
   }
   Spot spot(double x, double y) const {
     return {static_cast<int>(std::lround((x - camera.left) * per_nm)),
@@ -338,8 +338,17 @@ std::string hex(const Rgb& c) {
                      static_cast<int>(std::lround(c.b)));
 }
 
-std::string body_colour(bool coloured, int colour, double depth) {  // depth 0: back, 1: front
-  return coloured ? viridis((colour + 0.5) / moment_colours) : hex(mix({84, 106, 130}, {168, 194, 218}, depth));
+// Blue below zero, red above.
+std::string rope_colour(const RopeColours& by, int colour) {
+  const double at = (colour + 0.5) / rope_colours;
+  if (!by.is_signed) return viridis(at);
+  return hex(at < 0.5 ? mix({33, 102, 172}, {238, 240, 242}, 2 * at)
+                      : mix({238, 240, 242}, {178, 24, 43}, 2 * at - 1));
+}
+
+std::string body_colour(const RopeCamera& camera, int colour, double depth) {  // depth 0: back, 1: front
+  return camera.coloured() ? rope_colour(camera.coloured_by, colour)
+                           : hex(mix({84, 106, 130}, {168, 194, 218}, depth));
 }
 
 using PathRange = std::pair<Paths::const_iterator, Paths::const_iterator>;
@@ -354,7 +363,8 @@ std::string define_layer(const PathRange& paths, const std::string& id) {
 
 // Outline, body and highlight. The outline leaves out the beginning of every piece, where it would show as a seam
 // on the piece behind. The opacity belongs to the group of highlights, so that overlaps of pieces do not show.
-std::string paint_layer(const PathRange& paths, const std::string& id, double radius, bool coloured, double depth) {
+std::string paint_layer(const PathRange& paths, const std::string& id, double radius, const RopeCamera& camera,
+                        double depth) {
   const auto width = [&](double radii) { return static_cast<int>(std::lround(radii * radius * per_nm)); };
   std::string text = fmt::format(
       "<use href=\"#{}\" stroke=\"#1d232b\" stroke-width=\"{}\" "
@@ -362,9 +372,9 @@ std::string paint_layer(const PathRange& paths, const std::string& id, double ra
       id, width(2 * reach), width(0.8 * overlap), width(1.85));
   for (auto p = paths.first; p != paths.second; ++p)
     text += fmt::format("<use href=\"#{}_{}\" stroke=\"{}\"/>", id, p->first.colour,
-                        body_colour(coloured, p->first.colour, depth));
+                        body_colour(camera, p->first.colour, depth));
   return text + fmt::format("</g><use href=\"#{}\" stroke=\"#fff\" stroke-width=\"{}\" opacity=\"{:.2f}\"/>\n", id,
-                            width(0.65), coloured ? 0.22 : 0.15 + 0.25 * depth);
+                            width(0.65), camera.coloured() ? 0.22 : 0.15 + 0.25 * depth);
 }
 
 std::string paint_link(const std::string& path, double radius) {
@@ -374,18 +384,18 @@ std::string paint_link(const std::string& path, double radius) {
 
 // Links come after the layer of the nearer one of their tubes.
 std::string paint(const Paths& paths, const std::map<int, std::string>& links, const std::string& name,
-                  const std::vector<double>& sizes, double radius, bool coloured) {
+                  const std::vector<double>& sizes, double radius, const RopeCamera& camera) {
   if (paths.empty()) return "";
   auto link = links.begin();
   const int first = paths.begin()->first.layer, last = paths.rbegin()->first.layer;
   std::string definitions = "<defs>", layers;
   for (auto p = paths.begin(); p != paths.end();) {
     const auto [layer, size, colour] = p->first;
-    const PathRange range = {p, paths.upper_bound({layer, size, moment_colours})};
+    const PathRange range = {p, paths.upper_bound({layer, size, rope_colours})};
     const std::string id = fmt::format("{}{}{}", name, layer - first, size > 0 ? fmt::format("s{}", size) : "");
     const double depth = last > first ? static_cast<double>(layer - first) / (last - first) : 1;
     definitions += define_layer(range, id);
-    layers += paint_layer(range, id, sizes[static_cast<std::size_t>(size)], coloured, depth);
+    layers += paint_layer(range, id, sizes[static_cast<std::size_t>(size)], camera, depth);
     p = range.second;
     if (p != paths.end() && p->first.layer == layer) continue;
     for (; link != links.end() && link->first <= layer; ++link) layers += paint_link(link->second, radius);
@@ -394,10 +404,8 @@ std::string paint(const Paths& paths, const std::map<int, std::string>& links, c
   return definitions + "</defs>\n" + layers;
 }
 
-bool has_moments(const RopeView& view) {
-  for (const auto& moments : view.bending_moment_eV)
-    if (!moments.empty()) return true;
-  return false;
+bool has_colours(const RopeView& view) {
+  return std::any_of(view.colour.begin(), view.colour.end(), [](const auto& tube) { return !tube.empty(); });
 }
 
 std::string rope_body(const RopeView& view, const RopeCamera& camera, double radius, double top,
@@ -406,9 +414,8 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
   std::vector<SeenTube> tubes;
   std::optional<DepthBuffer> buffer;
   std::size_t stride = 0;
-  const bool coloured = camera.moment_eV > 0 && has_moments(view);
   RopeCamera used = camera;
-  if (!coloured) used.moment_eV = 0;
+  if (!has_colours(view)) used.least = used.most = 0;
   const std::vector<double> sizes = sizes_of(view, radius);
   // Draws ever more coarsely until the text is small enough.
   for (const Detail& detail : details) {
@@ -417,11 +424,11 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
       tubes = seen_tubes(view, sizes, camera, stride);
       buffer = mark_visible(tubes, sizes);
     }
-    if (coloured) set_moments(tubes, view, detail.stride * detail.block);
+    if (used.coloured()) set_values(tubes, view, detail.stride * detail.block);
     const Painter painter{used, sizes, radius, top, 3.0 + static_cast<double>(stride)};
     Paths paths;
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
-    text = paint(paths, link_paths(view, painter, *buffer), name, sizes, radius, coloured);
+    text = paint(paths, link_paths(view, painter, *buffer), name, sizes, radius, used);
     if (text.size() < max_bytes - 1000) break;
   }
   return text;
@@ -487,17 +494,28 @@ double rounded_up(double v) {
   return 10 * base;
 }
 
-double moment_scale(const std::vector<RopeView>& views) {
+// The scale leaves out the outermost values, or one kinked bond would make all others look alike.
+void set_colours(const std::vector<RopeView>& views, RopeCamera& camera) {
   std::vector<double> all;
   for (const RopeView& view : views)
-    for (const auto& moments : view.bending_moment_eV)
-      for (const double m : moments)
-        if (std::isfinite(m)) all.push_back(std::abs(m));
-  if (all.empty()) return 0;
-  // The scale leaves out the largest values, or one kinked bond would make all others look alike.
-  const auto at = all.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(all.size() - 1));
-  std::nth_element(all.begin(), at, all.end());
-  return rounded_up(*at);
+    for (const auto& tube : view.colour) {
+      if (!tube.empty()) camera.coloured_by = view.coloured_by;
+      for (const double v : tube)
+        if (std::isfinite(v)) all.push_back(camera.coloured_by.is_signed ? std::abs(v) : v);
+    }
+  if (all.empty()) return;
+  std::sort(all.begin(), all.end());
+  const auto part = [&](double p) {
+    return all[static_cast<std::size_t>(p * static_cast<double>(all.size() - 1))];
+  };
+  camera.most = rounded_up(part(0.995));
+  camera.least = camera.coloured_by.is_signed ? -camera.most : 0;
+  if (all.front() >= 0) return;
+  const double low = part(0.005), high = part(0.995), range = high - low;
+  if (!(range > 0)) return;
+  const double step = std::pow(10.0, std::floor(std::log10(range))) / 5;
+  camera.least = step * std::floor(low / step);
+  camera.most = step * std::ceil(high / step);
 }
 
 }  // namespace
@@ -518,7 +536,7 @@ RopeCamera framed(RopeCamera c, const std::vector<RopeView>& views, double radiu
   c.left = x.low - 1.5 * radius;
   c.width = x.size() + 3 * radius;
   c.scale = std::min({widest / c.width, highest / height, 24.0});
-  c.moment_eV = moment_scale(views);
+  set_colours(views, c);
   return c;
 }
 
@@ -571,33 +589,39 @@ std::string rope_picture(const RopeView& view, const RopeCamera& camera, double 
 namespace {
 
 // Colours, and the scale below them.
-std::string bar_at(double moment_eV, double x, double y, const char* ink) {
+std::string bar_at(const RopeCamera& camera, double x, double y, const char* ink) {
   const double step = 18;
   std::string text;
-  for (int k = 0; k < moment_colours; ++k)
+  for (int k = 0; k < rope_colours; ++k)
     text += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"10\" fill=\"{}\"/>",
-                        x + k * step, y, step + 0.3, viridis((k + 0.5) / moment_colours));
+                        x + k * step, y, step + 0.3, rope_colour(camera.coloured_by, k));
   for (const int k : {0, 1, 2})
     text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" fill=\"{}\">{}{}</text>",
-                        x + 0.5 * k * moment_colours * step, y + 24, ink, k == 2 ? "≥ " : "",
-                        number_text(0.5 * k * moment_eV / units::nN_nm, 2));
-  return text + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">bending moment (nN nm)</text>\n",
-                            x + moment_colours * step + 34, y + 10, ink);
+                        x + 0.5 * k * rope_colours * step, y + 24, ink,
+                        k == 2                       ? "≥ "
+                        : k == 0 && camera.least < 0 ? "≤ "
+                                                     : "",
+                        number_text(camera.least + 0.5 * k * (camera.most - camera.least), 3));
+  const RopeColours& by = camera.coloured_by;
+  return text + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n", x + rope_colours * step + 34,
+                            y + 10, ink,
+                            escape_markup(by.quantity + (by.unit.empty() ? "" : " (" + by.unit + ")")));
 }
 
 }  // namespace
 
-std::string moment_bar(double moment_eV) {
-  return "<svg class=\"bar\" viewBox=\"0 0 420 30\" width=\"420\" height=\"30\" role=\"img\" "
-         "aria-label=\"Colours of the bending moment\">" +
-         bar_at(moment_eV, 14, 2, "var(--ink)") + "</svg>\n";
+std::string colour_bar(const RopeCamera& camera) {
+  return fmt::format(
+             "<svg class=\"bar\" viewBox=\"0 0 420 30\" width=\"420\" height=\"30\" role=\"img\" "
+             "aria-label=\"Colours: {}\">",
+             escape_markup(camera.coloured_by.quantity)) +
+         bar_at(camera, 14, 2, "var(--ink)") + "</svg>\n";
 }
 
 std::string rope_svg(const RopeView& view, double radius, double width) {
   RopeCamera camera = rope_camera({view}, radius, width - 20, width);
   const Extent y = vertical_extent(view, camera, radius);
-  const bool coloured = camera.moment_eV > 0;
-  const double rope = y.size() * camera.scale, height = rope + (coloured ? 62 : 44);
+  const double rope = y.size() * camera.scale, height = rope + (camera.coloured() ? 62 : 44);
   const double left = 0.5 * (width - camera.width * camera.scale);
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
@@ -608,7 +632,7 @@ std::string rope_svg(const RopeView& view, double radius, double width) {
       width, height, left, camera.scale / per_nm);
   text += rope_body(view, camera, radius, y.high, "t", max_bytes_of_file) + "</g>\n";
   text += scale_bar_at(camera, left + 1.5 * radius * camera.scale, rope + 27, "#1c1e22");
-  if (coloured) text += bar_at(camera.moment_eV, width - 400, rope + 22, "#1c1e22");
+  if (camera.coloured()) text += bar_at(camera, width - 400, rope + 22, "#1c1e22");
   return text + "</svg>\n";
 }
 
@@ -657,7 +681,7 @@ std::string section_picture(const CrossSection& section, const RopeShells& shell
     // The number of neighbours is printed if it is not six.
     text += name == "n6" || name == "outermost" ? circle + "/>"
                                                 : fmt::format("{}><title>tube {}: {} neighbours</title></circle>",
-                                                              circle, t + 1, section.neighbours[t]);
+                                                              circle, t, section.neighbours[t]);
   }
   return text + "\n</svg>\n";
 }

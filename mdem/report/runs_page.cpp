@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/log_mean.hpp"
 #include "report/log_figures.hpp"
 #include "report/page.hpp"
 #include "report/scatter.hpp"
@@ -92,7 +93,7 @@ std::string pictures(const std::vector<RunCurve>& runs, Figures& figures) {
     ++k;
   }
   html += "</div>\n";
-  if (camera.moment_eV > 0) html += moment_bar(camera.moment_eV);
+  if (camera.coloured()) html += colour_bar(camera);
   return html +
          figures.caption(
              fmt::format("All at the same scale; the bar is {:g} nm long. Colour: modulus of the bending "
@@ -113,6 +114,22 @@ std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::
   return columns;
 }
 
+std::string end_text(const RunCurve& run, const std::string& column) {
+  const auto text = [](double value, double error) {
+    return std::isfinite(value) ? measured_text(value, error) : std::string("–");
+  };
+  if (!run.means) return text(run.log.back()[column], run.error.empty() ? nan : run.error.back()[column]);
+  const RunMeans& m = *run.means;
+  std::string words = text(m.value[column], m.error[column]);
+  if (m.needed_ps[column] > 0)
+    words += fmt::format(" <span class=\"soft\">too short for an error, {} ps would do</span>",
+                         number_text(m.needed_ps[column], 2));
+  else if (std::isfinite(m.correlation_ps[column]))
+    words +=
+        fmt::format(" <span class=\"soft\">correlated over {} ps</span>", number_text(m.correlation_ps[column], 2));
+  return words;
+}
+
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
@@ -126,10 +143,7 @@ std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::strin
     html += first
                 ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
                 : "<td>–</td><td>–</td>";
-    for (const std::string& c : columns) {
-      const double value = run.log.back()[c], error = run.error.empty() ? nan : run.error.back()[c];
-      html += "<td>" + (std::isfinite(value) ? measured_text(value, error) : std::string("–")) + "</td>";
-    }
+    for (const std::string& c : columns) html += "<td>" + end_text(run, c) + "</td>";
     html += "<td class=\"soft\">" + escape_markup(run.remark) + "</td></tr>\n";
   }
   return html + "</tbody></table></div>\n";
@@ -139,6 +153,32 @@ std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::strin
 
 bool stands_still(const std::vector<LogRow>& log) {
   return log.size() > 1 && log.back()["time_ps"] == log.front()["time_ps"];
+}
+
+RunMeans means_of(const std::vector<std::vector<LogRow>>& logs, double over_ps) {
+  RunMeans out;
+  out.over_ps = over_ps;
+  const auto n = static_cast<double>(logs.size());
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    double sum = 0, squares = 0, correlation = 0, needed = 0, error = nan;
+    std::vector<double> values;
+    for (const auto& log : logs) {
+      const LogMean mean =
+          mean_of_last(rows_of_last(over_ps, log), log, [k](const LogRow& row) { return row.values()[k]; });
+      values.push_back(mean.value);
+      sum += mean.value;
+      correlation += mean.correlation_ps / n;
+      needed = std::max(needed, mean.needed_ps);
+      error = mean.error;
+    }
+    for (const double v : values) squares += std::pow(v - sum / n, 2);
+    const bool alone = logs.size() == 1;
+    out.value.values()[k] = sum / n;
+    out.error.values()[k] = alone ? error : std::sqrt(squares / (n - 1) / n);
+    out.correlation_ps.values()[k] = correlation;
+    out.needed_ps.values()[k] = alone ? needed : 0;
+  }
+  return out;
 }
 
 RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& all) {
@@ -182,13 +222,23 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
                      escape_markup(title) + "</h1>\n" + first;
   const bool beyond = std::any_of(runs.begin(), runs.end(),
                                   [](const RunCurve& r) { return rows_within(r.log, r.limits) < r.log.size(); });
-  const bool replicated = std::any_of(runs.begin(), runs.end(), [](const RunCurve& r) { return r.replicates > 1; });
-  html +=
-      paragraph(fmt::format("The ends of {} {}.{}", runs.size(), replicated ? "ensembles" : "runs",
-                            replicated ? " Values are means over runs that differ in their seed alone, with the "
-                                         "standard error of the mean."
-                                       : "")) +
-      ends(runs, columns) + heading("Curves");
+  const auto any = [&](bool replicates) {
+    return std::any_of(runs.begin(), runs.end(), [&](const RunCurve& r) {
+      return replicates ? r.replicates > 1 : r.replicates == 1 && !r.error.empty();
+    });
+  };
+  const bool replicated = any(true), carried = any(false);
+  html += paragraph(fmt::format(
+              "{} {} {}.{}{}",
+              !runs.empty() && runs.front().means
+                  ? fmt::format("Means over the last {} ps of", number_text(runs.front().means->over_ps, 4))
+                  : "The ends of",
+              runs.size(), replicated ? "ensembles" : "runs",
+              replicated ? " Values are means over runs that differ in their seed alone, with the "
+                           "standard error of the mean."
+                         : "",
+              carried ? " Errors of single runs are those that <code>ropewalk errors</code> found." : "")) +
+          ends(runs, columns) + heading("Curves");
   std::string open;
   for (const std::string& column : columns) {
     const std::string svg = scatter_svg(chart_of(runs, figure, column));
@@ -196,12 +246,13 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
     std::string meaning = observables()[index_of_observable(column)].meaning;
     if (!meaning.empty()) meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
     const std::string one =
-        svg.empty() ? not_drawn(column_axis(column).quantity)
-                    : "<figure>" + title_text + svg +
-                          figures.caption(escape_markup(meaning) + "." +
-                                          (beyond ? " Dotted: beyond the first limit of the run." : "") +
-                                          (replicated ? " Bands: one standard error to either side." : "")) +
-                          data_table(table_of(runs, figure.x, column), "Every row is in the logs.") + "</figure>\n";
+        svg.empty()
+            ? not_drawn(column_axis(column).quantity)
+            : "<figure>" + title_text + svg +
+                  figures.caption(escape_markup(meaning) + "." +
+                                  (beyond ? " Dotted: beyond the first limit of the run." : "") +
+                                  (replicated || carried ? " Bands: one standard error to either side." : "")) +
+                  data_table(table_of(runs, figure.x, column), "Every row is in the logs.") + "</figure>\n";
     if (open.empty()) {
       open = one;
       continue;
@@ -218,8 +269,27 @@ std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure
   return columns.empty() ? "" : chart_file(chart_of(runs, figure, columns.front()));
 }
 
+namespace {
+
+std::string means_csv(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
+  std::string text = "run,replicates,mean_over_ps";
+  for (const std::string& c : columns) text += fmt::format(",{0},{0}_standard_error,{0}_correlation_ps", c);
+  text += "," + column_names(limit_columns()) + "\n";
+  for (const RunCurve& run : runs) {
+    text += fmt::format("\"{}\",{},{:.6g}", run.name, run.replicates, run.means->over_ps);
+    for (const std::string& c : columns)
+      text += fmt::format(",{:.8g},{:.3g},{:.3g}", run.means->value[c], run.means->error[c],
+                          run.means->correlation_ps[c]);
+    text += "," + limit_cells(run.limits) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure) {
   const std::vector<std::string> columns = columns_of(runs, figure);
+  if (!runs.empty() && runs.front().means) return means_csv(runs, columns);
   std::string text = "run,replicates," + figure.x;
   for (const std::string& c : columns) text += fmt::format(",{},{}_standard_error", c, c);
   text += "," + column_names(limit_columns()) + "\n";

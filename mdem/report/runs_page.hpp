@@ -11,16 +11,30 @@
 
 namespace ropewalk {
 
+// Means over the last part of a run, or of replicates, in the columns of the log.
+struct RunMeans {
+  double over_ps = 0;
+  LogRow value;
+  LogRow error;           // of blocks (io/log_mean.hpp), of replicates that of their scatter; nan: none
+  LogRow correlation_ps;  // the mean over replicates
+  LogRow needed_ps;       // where the time is too short for an error; else 0
+};
+// Of logs that are not empty.
+RunMeans means_of(const std::vector<std::vector<LogRow>>& logs, double over_ps);
+
 // One run, or the mean over replicates that differ in their seed alone.
 struct RunCurve {
   std::string name;
   std::vector<LogRow> log;
-  std::vector<LogRow> error;  // standard error of the mean, row by row; empty: a single run
+  // Row by row: the standard error of the mean, or what is known of a single run (rows_of_errors()); empty:
+  // nothing.
+  std::vector<LogRow> error;
   std::size_t replicates = 1;
   std::string remark;                    // how it ended
   std::vector<LimitRecord> limits = {};  // of the run, or of the replicate that passed a limit first
   std::optional<RopeView> view = {};     // of the last frame, of the first replicate
   double tube_radius = 0;                // nm
+  std::optional<RunMeans> means = {};    // in the table of ends, in the place of the last rows
 };
 
 // Whether no time passes in its rows, as in the log of a relaxation.
@@ -49,7 +63,8 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
                       Figures figures = {}, const std::string& first = "");
 // The chart of the first y alone, as a file on white. Empty where there is nothing to draw.
 std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure);
-// x, then y and its error for each run: what the charts show.
+// x, then y and its error for each run: what the charts show. Where the runs have means, a line for each run with
+// y, its error and its correlation time.
 std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure);
 
 }  // namespace ropewalk

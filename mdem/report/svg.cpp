@@ -7,8 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "io/child_process.hpp"
 #include "io/draft.hpp"
-#include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/drawing.hpp"
 #include "report/scatter.hpp"
@@ -119,6 +119,7 @@ Scale decades_of(const AxisRange& range) {
   s.range = range;
   s.decades = true;
   const std::vector<double> parts = range.span() < 0.8   ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9}
+                                    : range.span() < 1.4 ? std::vector<double>{1, 2, 3, 5, 7}
                                     : range.span() < 2.5 ? std::vector<double>{1, 2, 5}
                                                          : std::vector<double>{1};
   const int every = std::max(1, static_cast<int>(range.span() / 6));

@@ -88,13 +88,20 @@ std::string chart_svg(const LineChart& chart);
 
 // --- Ropes from the side ---
 
+// What tubes are coloured by, as the bar of colours names it.
+struct RopeColours {
+  std::string quantity = "bending moment", unit = "nN nm";  // the unit may be empty
+  bool is_signed = false;                                   // zero is the middle of the colours
+};
+
 struct RopeView {
   double time_ps = 0;
   double beta_deg = 0;
-  std::vector<std::vector<Vector3>> tubes;                  // nm
-  std::vector<std::vector<double>> bending_moment_eV = {};  // per element; none: shaded by depth alone
-  std::vector<double> radii = {};                           // nm, of the tubes; none: all are of the one radius
-  std::vector<std::array<Vector3, 2>> links = {};           // nm, on the axes of the two tubes; drawn in red
+  std::vector<std::vector<Vector3>> tubes;  // nm
+  RopeColours coloured_by = {};
+  std::vector<std::vector<double>> colour = {};    // of each element, in its unit; none: shaded by depth alone
+  std::vector<double> radii = {};                  // nm, of the tubes; none: all are of the one radius
+  std::vector<std::array<Vector3, 2>> links = {};  // nm, on the axes of the two tubes; drawn in red
 };
 
 // Direction and scale of a view. Several views with one camera are comparable.
@@ -102,7 +109,9 @@ struct RopeCamera {
   Vector3 right = Vector3::UnitZ(), up = Vector3::UnitX(), towards = Vector3::UnitY();
   double left = 0, width = 1;  // nm along `right`
   double scale = 1;            // pixels per nm
-  double moment_eV = 0;        // upper end of the colours; 0: no view has moments
+  RopeColours coloured_by = {};
+  double least = 0, most = 0;  // ends of the colours; the same: no view has any
+  bool coloured() const { return most > least; }
 };
 // The rope lies across the page, and the plane of its largest deflection in the page.
 RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, double widest = 1040,
@@ -116,7 +125,7 @@ RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, c
 std::string rope_picture(const RopeView& view, const RopeCamera& camera, double tube_radius,
                          const std::string& name, bool scale_bar);
 double scale_bar_length(const RopeCamera& camera);  // nm
-std::string moment_bar(double moment_eV);           // an <svg> element: the colours and their scale
+std::string colour_bar(const RopeCamera& camera);   // an <svg> element: the colours and their scale
 
 // A file of its own, on white, with scale bar and colours: for a README or a paper.
 std::string rope_svg(const RopeView& view, double tube_radius, double width = 1200);

@@ -90,8 +90,12 @@ void Checkpoints::save_kept() {
 
 void Checkpoints::write_results() {
   moving_.simulation.end_relaxation();  // saved as it was; final.csv is of a state at rest
-  files_.write_events(moving_);
   files_.write_final_state(moving_);
+  write_limits_and_events();
+}
+
+void Checkpoints::write_limits_and_events() {
+  files_.write_events(moving_);
   limits_.write();
 }
 

@@ -35,8 +35,10 @@ class Checkpoints {
   // The same, written by save_kept().
   void keep_here(StopReason ends_for);
   void save_kept();
-  // Writes the files that a stopped run leaves beside log and frames: final state, limits, events.
+  // Writes the files that a run leaves at its end beside log and frames: final state, limits, events.
   void write_results();
+  // Without the final state, which takes as long as a checkpoint: for a run that is to go on.
+  void write_limits_and_events();
   // The run broke off: the last good state is saved if it is newer than the checkpoint.
   void save_snapshot() const;
   // The run went back to the snapshot: a checkpoint later than this would know of more than log and frames then

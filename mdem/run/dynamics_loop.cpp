@@ -49,7 +49,7 @@ bool DynamicsLoop::advance(const Stretch& t) {
     return false;
   }
   if ((t.marked || t.last) && !run_.rollback.is_sound() &&
-      run_.rollback.roll_back("the account of energy did not close", t.closely))
+      run_.rollback.roll_back("the energy balance did not close", t.closely))
     return false;
   seconds_of_a_step_ = std::max((steady_seconds() - began) / static_cast<double>(t.count), 1e-9);
   return true;

@@ -18,7 +18,8 @@ struct Judgement {
   std::string words;  // "geometric_twist_deg is 162.6 at 100 ps, as expected: 162.4 ± 0.5"
 };
 
-// Rows in the order of time. A column without a value at that time, or a time that no rows enclose, is a miss.
+// Without those of another scene (Expectation::of_other_scene). Rows in the order of time. A column without a value
+// at that time, or a time that no rows enclose, is a miss.
 std::vector<Judgement> judge(const std::vector<Expectation>& expected, const std::vector<LogRow>& rows);
 
 // The same of the log of a run, and of the stages before it where its elements were split.

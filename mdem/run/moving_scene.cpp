@@ -4,6 +4,7 @@
 
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
@@ -51,11 +52,12 @@ EnergyAccount account_of(const Simulation& simulation, const Energies& first, do
 }
 
 void refuse_stops_without_value(const Scene& scene, const LogRow& first) {
-  for (const StopRule& rule : scene.stops) {
+  for (std::size_t k = 0; k < scene.stops.size(); ++k) {
+    const StopRule& rule = scene.stops[k];
     const bool shape = rule.when == StopRule::When::shape;
     const std::string column = shape ? "radius_mid_nm" : rule.column;
     if (!column.empty() && std::isnan(first[column]))
-      throw InputError({scene.path, 0, shape ? "stop.shape" : "stop.column"},
+      throw InputError(place_in(scene, shape ? "stop.shape" : "stop.column", static_cast<int>(k)),
                        "\"" + column + "\" has no value in this scene, so that the rule would never stop it",
                        "take a column that has one; tubes that are not side by side have no centre line, a rope "
                        "without inner tubes no core, and one rope alone no ply angle");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "io/toml_table.hpp"
+#include "io/toml_text.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
@@ -33,12 +33,7 @@ void collect(const toml::node& node, const std::string& path, Values& out) {
 
 Values values_of(const std::string& text, const std::string& file) {
   Values out;
-  try {
-    collect(toml::parse(text), "", out);
-  } catch (const toml::parse_error& e) {
-    throw InputError({file, static_cast<int>(e.source().begin.line), ""}, std::string(e.description()),
-                     "correct the file");
-  }
+  collect(parsed_toml(text, file), "", out);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 
 namespace ropewalk {
@@ -25,6 +26,14 @@ std::string PendingFiles::names() const {
   std::string words;
   for (const auto& [path, content] : waiting_) words += (words.empty() ? "" : ", ") + path;
   return words;
+}
+
+void report_or_tell(const RunDirectory& dir, RunListener& listener, const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const std::exception& e) {
+    listener.tell(fmt::format("no report: {}; make it with: ropewalk report {}", error_words(e), dir.path));
+  }
 }
 
 }  // namespace ropewalk

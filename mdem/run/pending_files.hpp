@@ -2,9 +2,11 @@
 // be written ends no run: it is said, and tried again.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
+#include "run/run_directory.hpp"
 #include "run/run_listener.hpp"
 
 namespace ropewalk {
@@ -22,5 +24,8 @@ class PendingFiles {
   RunListener& listener_;
   std::map<std::string, std::string> waiting_;  // content by path
 };
+
+// Makes a report by `write`. One that cannot be drawn or written is said, since it can be made later.
+void report_or_tell(const RunDirectory& dir, RunListener& listener, const std::function<void()>& write);
 
 }  // namespace ropewalk

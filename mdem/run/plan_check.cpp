@@ -7,7 +7,7 @@
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
-#include "plan/check.hpp"
+#include "plan/spot_check.hpp"
 #include "plan/outcome.hpp"
 #include "plan/planner.hpp"
 #include "run/run_checkpoint.hpp"

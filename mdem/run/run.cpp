@@ -4,11 +4,12 @@
 
 #include <cmath>
 
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "run/dynamics_loop.hpp"
 #include "run/load_steps_loop.hpp"
+#include "run/pending_files.hpp"
 #include "run/plan_check.hpp"
 #include "run/refined_run.hpp"
 #include "run/relaxation_loop.hpp"
@@ -40,16 +41,11 @@ void Run::write_manifest(const char* status, const std::string& reason) {
   parts_.files.write_manifest(manifest_of(parts_, status, reason));
 }
 
-// A report that cannot be drawn can be made later.
 void Run::write_end(const char* status, const std::string& reason) {
   const RunDirectory& dir = parts_.files.directory();
   write_manifest(status, reason);
-  try {
-    parts_.files.write_report(report_of(dir, parts_.moving.scene, parts_.moving.prepared));
-  } catch (const std::exception& e) {
-    parts_.listener.tell(
-        fmt::format("no report: {}; make it with: ropewalk report {}", failure_words(e), dir.path));
-  }
+  report_or_tell(dir, parts_.listener,
+                 [&] { parts_.files.write_report(report_of(dir, parts_.moving.scene, parts_.moving.prepared)); });
   parts_.files.try_again();
 }
 
@@ -131,7 +127,7 @@ RunResult Run::stopped_at_limit() {
 }
 
 RunResult Run::stopped(RunEnd end) {
-  parts_.checkpoints.write_results();
+  parts_.checkpoints.write_limits_and_events();  // batch systems wait for some seconds only
   const std::string reason =
       fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
@@ -176,7 +172,7 @@ RunResult Run::failed(const NumericalError& e) {
 
 // The last good state is saved if that is still possible.
 RunResult Run::broken_off(const std::exception& e) {
-  const std::string why = failure_words(e);
+  const std::string why = error_words(e);
   std::exception_ptr error = std::current_exception();
   try {
     parts_.checkpoints.save_snapshot();

@@ -42,12 +42,15 @@ bool ends_in(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Of the directory `errors`: errors.json, and for each run behind it NAME-plus.toml and the directory NAME-plus.
+// Of the directory `errors`: errors.json and numerics.json, the directories of the runs behind numerics.json, and
+// for each run behind errors.json NAME-plus.toml and the directory NAME-plus.
 bool is_errors_file(const std::string& name) {
+  for (const char* run : {"half-elements", "half-step", "half-rate", "tenth-tolerance", "start-*"})
+    if (fits(name, run)) return true;
   for (const char* side : {"-plus", "-minus"})
     if (ends_in(name, side) || ends_in(name, std::string(side) + ".toml")) return true;
   const std::string whole = without_part(name);
-  return name == "errors.json" || (!whole.empty() && (whole == "errors.json" || is_errors_file(whole)));
+  return name == "errors.json" || name == "numerics.json" || (!whole.empty() && is_errors_file(whole));
 }
 
 bool belongs_to_a_run(const std::string& inside) {
@@ -92,15 +95,17 @@ const std::vector<OutputFile>& run_files() {
       {"view.html", "view", "page that shows the frames in space"},
       {"errors.csv", "errors", "standard errors of the observables by those of the inputs, as log.csv"},
       {"errors-potential.csv", "errors", "their errors by the spread between interatomic potentials, as log.csv"},
-      {"errors", "errors", "directory with the runs behind errors.csv, and errors.json"},
+      {"errors-numerics.csv", "errors", "their errors by elements, time step and rate, as log.csv"},
+      {"errors-statistics.csv", "errors", "their errors by other starts and random numbers, as log.csv"},
+      {"errors", "errors", "directory with the runs behind these files, errors.json and numerics.json"},
       {"changed.toml", "errors", "in the runs behind errors.csv: the set, file or scene with its changed number"},
       {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
-      {"final.csv", "run, import",
-       "the state at the end, interrupted or not: the start of another scene by [state]"},
+      {"final.csv", "run, import", "the state at the end: the start of another scene by [state]"},
       {"final-memory.csv", "run, import",
        "what friction, links and tethers remember there; it belongs beside `final.csv`"},
       {"failed-state.csv", "run", "the state of a run that failed"},
       {"failed-state-memory.csv", "run", "what friction, links and tethers remember there"},
+      {"sections.csv", "coarsen", "radius, ovality and shear of the elements' atoms, means over the frames"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
       {"rope.state", "export", "binary: the state where LAMMPS begins"},

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
 
 #include "sim/contact/line/engine.hpp"
 #include "sim/device/device_stepper.hpp"
+#include "sim/threads/threads.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -19,7 +19,7 @@ Manifest manifest_of(const RunParts& run, const std::string& status, const std::
   m.build_type = build_type;
   m.instructions = instructions_in_use();
   if (const DeviceStepper* device = run.moving.simulation.device()) m.device = device->name();
-  m.threads = omp_get_max_threads();
+  m.threads = threads_in_use();
   m.seed = scene.start.seed;
   m.scene_hash = scene.hash;
   m.parameter_hash = scene.parameters().hash;

@@ -46,6 +46,8 @@ void Run::tell_notes() const {
   for (const auto& notes : {forgotten(scene.memory, prepared.interaction), warnings_of(scene, prepared),
                             warmth_of(scene, prepared), limits_ahead(scene, prepared)})
     for (const std::string& note : notes) parts_.listener.tell_note(note);
+  if (std::any_of(scene.expected.begin(), scene.expected.end(), [](const auto& e) { return e.of_other_scene; }))
+    parts_.listener.tell_note("the scene was changed, and what it expects by [[expect]] is not judged");
 }
 
 std::string own_forces_of(const RunSettings& settings) {

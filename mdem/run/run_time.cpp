@@ -1,7 +1,6 @@
 #include "run/run_time.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -20,10 +19,11 @@
 #include "plan/scene_edit.hpp"
 #include "run/begin_run.hpp"
 #include "run/colours.hpp"
-#include "run/threads.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 #include "scene/wound.hpp"
+#include "sim/dynamics/shorter_steps.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -35,26 +35,25 @@ constexpr double frames_in_report = 6;  // frames in a report
 
 // --- Steps ---
 
-double seconds_of_a_step(Simulation& s) {
-  s.steps(5, false);
-  const double began = processor_seconds();
-  long count = 0;
-  while (count < min_steps || (count < max_steps && processor_seconds() - began < enough)) {
-    s.steps(min_steps, false);
-    count += min_steps;
-  }
-  return (processor_seconds() - began) / static_cast<double>(count);
+double seconds_of_a_step(const Simulation& begin) {
+  return with_shorter_steps(begin, [](Simulation& s) {
+    s.steps(5, false);
+    const double began = processor_seconds();
+    long count = 0;
+    while (count < min_steps || (count < max_steps && processor_seconds() - began < enough)) {
+      s.steps(min_steps, false);
+      count += min_steps;
+    }
+    return (processor_seconds() - began) / static_cast<double>(count);
+  });
 }
 
 double seconds_from(const Scene& scene, const Prepared& p, State state) {
-  Simulation s(p.topology, p.interaction, p.loads, std::move(state), p.time_step, scene.contact.skin, p.stepping);
-  return seconds_of_a_step(s);
+  return seconds_of_a_step(Simulation(p.topology, p.interaction, p.loads, std::move(state), p.time_step,
+                                      scene.contact.skin, p.stepping));
 }
 
-double seconds_from_the_start(const Scene& scene, const Prepared& p) {
-  Simulation s = start(scene, p);
-  return seconds_of_a_step(s);
-}
+double seconds_from_the_start(const Scene& scene, const Prepared& p) { return seconds_of_a_step(start(scene, p)); }
 
 // Turned so far, or as far as the rope bears to be laid: it keeps its cross-section, and turned too far its tubes
 // lie in one another.
@@ -185,7 +184,7 @@ void time_outputs_of_a_run(const std::string& text, const std::string& path, con
 }  // namespace
 
 RunTime time_run(const std::string& text, const std::string& path) {
-  const int threads = omp_get_max_threads();
+  const int threads = threads_in_use();
   use_threads(1);
   Scene scene = scene_of_text(text, path);
   const Prepared p = prepare(scene);

@@ -1,11 +1,12 @@
 // Notes on a scene before and after a run: grades, warnings, error bars.
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/grade.hpp"
+#include "io/toml_text.hpp"
 #include "model/self_contact.hpp"
 #include "observe/bending.hpp"
 #include "observe/centre_line.hpp"
@@ -13,6 +14,7 @@
 #include "scene/dissipation.hpp"
 #include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
+#include "scene/spacing.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
@@ -52,17 +54,17 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
 
 // A key of earlier scenes, which belongs to a pair of elements.
 void warn_of_viscosity_per_pair(const Scene& scene, std::vector<std::string>& warnings) {
-  const toml::table top = toml::parse(scene.text);
+  const toml::table top = parsed_toml(scene.text, scene.path);
   const double typed = top["damping"]["contact_viscosity_eV_ps_per_nm2"].value_or(0.0);
   if (!(typed > 0)) return;
-  const ParameterSet& set = scene.parameters();
-  const double per_length =
-      default_viscosity * typed / contact_viscosity(default_viscosity, set.element_length, set.radius);
+  const double own = own_element_length(scene);
+  const double per_length = default_viscosity * scene.damping.contact.eta /
+                            contact_viscosity(default_viscosity, scene.element_length, scene.sets);
   warnings.push_back(fmt::format(
       "damping.contact_viscosity_eV_ps_per_nm2 = {:.6g} stands for pairs of elements of {:.4g} nm, the set's own "
       "length{}. damping.contact_viscosity_eV_ps_per_nm3 = {:.6g} says the same per length of contact.",
-      typed, set.element_length,
-      scene.element_length == set.element_length
+      typed, own,
+      scene.element_length == own
           ? ""
           : fmt::format(", and is {:.4g} for those of {:.4g} nm", scene.damping.contact.eta, scene.element_length),
       per_length));
@@ -110,15 +112,21 @@ void warn_of_no_centre_line(const Topology& topology, const State& state, std::v
 
 // Collapsed tubes twist on without end where nothing else holds the moment.
 void warn_of_collapsing_moment(const Scene& scene, const Prepared& p, std::vector<std::string>& warnings) {
-  const TubeType& type = p.topology.types.front();
-  const double most = largest_torque(type.bond, type.element_length);
+  // Of the type that bears least.
+  double most = std::numeric_limits<double>::infinity();
+  std::size_t weakest = 0;
+  for (const int k : p.topology.tube_type) {
+    const TubeType& type = p.topology.types[static_cast<std::size_t>(k)];
+    const double torque = largest_torque(type.bond, type.element_length);
+    if (torque < most) most = torque, weakest = static_cast<std::size_t>(k);
+  }
   const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
   const double moment = load ? load->of_each(p.topology.strands()) : 0;
   if (scene.bond.anharmonic && moment > most)
     warnings.push_back(fmt::format(
         "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
         "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
-        moment / units::nN_nm, scene.parameters().name, most / units::nN_nm));
+        moment / units::nN_nm, scene.sets[weakest].name, most / units::nN_nm));
 }
 
 // Warns of a radius for Q that reaches the second shell of the packing.

@@ -10,13 +10,13 @@
 
 #include <cstdint>
 
-#include "sim/dynamics/simulation.hpp"
+#include "sim/dynamics/shorter_steps.hpp"
 
 namespace ropewalk {
 
 struct StepControl {
   static constexpr std::int64_t window = 128, least_keep = 512, most_keep = 8192;  // steps
-  static constexpr int most = 16;
+  static constexpr int most = most_parts_of_a_step;
 
   std::int64_t kept_until = 0;     // the step before which steps stay divided
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next

@@ -48,7 +48,7 @@ int tell_end(const RunResult& r) {
   switch (r.end) {
     case RunEnd::finished:
       print_results(r);
-      if (r.beyond > far_beyond) tell(r.worst + ": its results are not those of such tubes");
+      if (r.beyond > far_beyond) tell(r.worst + ". Beyond it the results do not describe real tubes");
       return missed(r.expected) > 0 ? not_as_expected : 0;
     case RunEnd::incomplete:
       print_results(r);

@@ -11,8 +11,9 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/maxwell.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/packing.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/spacing.hpp"
 #include "scene/wound.hpp"
@@ -56,7 +57,7 @@ void set_tube_types(const Scene& scene, Topology& topology) {
   const int tubes = topology.tubes(), strands = topology.strands(),
             typed = static_cast<int>(scene.tube_types.size());
   if (typed != tubes && typed != strands)
-    throw InputError({scene.path, 0, "tube_types"},
+    throw InputError(place_in(scene, "tube_types"),
                      fmt::format("has {} numbers, and the scene has {} tubes{}", typed, tubes,
                                  strands < tubes ? fmt::format(" in {} strands", strands) : ""),
                      strands < tubes ? "write one for each strand or for each tube" : "write one for each tube");
@@ -66,7 +67,7 @@ void set_tube_types(const Scene& scene, Topology& topology) {
     for (std::size_t t = 0; t < one.size(); ++t)
       if (topology.tube_type[t] != topology.tube_type[static_cast<std::size_t>(one[t])])
         throw InputError(
-            {scene.path, 0, "tube_types"},
+            place_in(scene, "tube_types"),
             fmt::format("gives tubes {} and {} different types, and they are pieces of one tube of the "
                         "slice",
                         one[t], t),
@@ -127,7 +128,7 @@ void add_wave_to_rope(const Scene& scene, const Topology& topology, State& state
   const double length = chord.norm();
   if (topology.tubes() == 0 || !run_the_same_way(topology, state) || !(length > 0) ||
       !(normal_part(Vector3::UnitX(), chord / length).norm() > 0.1))
-    throw InputError({scene.path, 0, "start.wave_nm"}, "is for tubes that stand upright side by side",
+    throw InputError(place_in(scene, "start.wave_nm"), "is for tubes that stand upright side by side",
                      "take it away, or bend the tubes of the state file");
   const Vector3 along = chord / length, aside = normal_part(Vector3::UnitX(), along).normalized();
   const double k = scene.start.half_waves * units::pi / length;
@@ -165,17 +166,17 @@ void add_wave(const Scene& scene, const Topology& topology, State& state) {
 void wind(const Scene& scene, State& state) {
   if (scene.start.turn == 0) return;
   if (!scene.source->is_parallel())
-    throw InputError({scene.path, 0, "start.twist_deg_per_nm"}, "is for straight tubes side by side",
+    throw InputError(place_in(scene, "start.twist_deg_per_nm"), "is for straight tubes side by side",
                      "take it away, or a [rope]");
   if (scene.start.wave > 0)
-    throw InputError({scene.path, 0, "start.twist_deg_per_nm"}, "and wave_nm do not go together",
+    throw InputError(place_in(scene, "start.twist_deg_per_nm"), "and wave_nm do not go together",
                      "bend the rope that this one has become: [state] with wave_nm");
   double rim = 0;
   for (std::size_t i = 0; i < state.size(); ++i)
     rim = std::max(rim, std::hypot(state.position.x[i], state.position.y[i]));
   if (const double slope = rim * std::fabs(scene.start.turn); slope > 1)
     throw InputError(
-        {scene.path, 0, "start.twist_deg_per_nm"},
+        place_in(scene, "start.twist_deg_per_nm"),
         fmt::format("lays the outermost tubes at {:.3g} degrees to the axis", std::atan(slope) / units::degree),
         fmt::format("at most 45 degrees, {:.3g} deg/nm, can be built", 1 / rim / units::degree));
   state = wound(state, scene.start.turn);
@@ -184,12 +185,12 @@ void wind(const Scene& scene, State& state) {
 // Refuses state files that lack what the rest of the scene needs.
 void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.start.temperature > 0 && built.state.size() < 2)
-    throw InputError({scene.path, 0, "start.temperature_K"},
+    throw InputError(place_in(scene, "start.temperature_K"),
                      "one element alone has no thermal motion about its centre", "take 0");
   const auto moves = [](const Vec3Array& v, std::size_t i) { return !v[i].isZero(0); };
   for (std::size_t i = 0; scene.start.temperature > 0 && i < built.state.size(); ++i)
     if (moves(built.state.velocity, i) || moves(built.state.angular_velocity, i))
-      throw InputError({scene.path, 0, "start.temperature_K"},
+      throw InputError(place_in(scene, "start.temperature_K"),
                        fmt::format("would replace the velocities of {}", scene.source->file()),
                        "take it away, or the last six columns of the file");
 }
@@ -224,7 +225,7 @@ BuiltScene build(Scene& scene) {
   scene.memory = scene.source->memory();
   scene.lineage = lineage_key(scene.start.stream, scene.memory.lineage);
   if (const std::string memory = beyond_memory(out.topology.elements()); !memory.empty())
-    throw InputError({scene.path, 0, scene.kind},
+    throw InputError(place_in(scene, scene.kind),
                      fmt::format("holds {} elements, {}", out.topology.elements(), memory),
                      "take fewer elements, or another machine");
   set_tube_types(scene, out.topology);
@@ -232,7 +233,7 @@ BuiltScene build(Scene& scene) {
   draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
-  out.topology.groups.ends_meet = out.topology.strands() < out.topology.tubes() && !end_contacts(scene).empty();
+  out.topology.groups.ends_meet = ends_meet(scene, out.topology);
   set_collapse(scene, out.topology);
   check_state(scene, out);
   if (scene.lineage != 0) random = Random(lineage_key(scene.start.seed, scene.lineage));

@@ -25,6 +25,12 @@ double contact_viscosity(double per_length, double a, double radius) {
   return per_length == default_viscosity ? by_default : per_length * by_default / default_viscosity;
 }
 
+double contact_viscosity(double per_length, double a, const std::vector<ParameterSet>& sets) {
+  double sum = 0;
+  for (const ParameterSet& set : sets) sum += contact_viscosity(per_length, a, set.radius);
+  return sum / static_cast<double>(sets.size());
+}
+
 Damping same_dissipation(Damping d, double from, double to) {
   if (d.contact.eta > 0)
     d.contact.eta *= viscosity_per_length(d.contact, from) / viscosity_per_length(d.contact, to);

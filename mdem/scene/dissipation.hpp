@@ -9,7 +9,10 @@
 // Where elements of two tubes lie at any offset the mean of the first is eta/a^2.
 #pragma once
 
+#include <vector>
+
 #include "model/damping.hpp"
+#include "model/parameters.hpp"
 
 namespace ropewalk {
 
@@ -17,6 +20,8 @@ namespace ropewalk {
 // length of contact and speed of sliding. It goes as a^2 over the distance of the axes, 2 r and the gap of
 // graphite.
 double contact_viscosity(double per_length, double element_length, double radius);
+// The mean over the sets of a scene, in whatever order it lists them.
+double contact_viscosity(double per_length, double element_length, const std::vector<ParameterSet>& sets);
 // eV ps/nm^3, of a scene that gives none, and by definition that of the published set with 20 eV ps/nm^2 for a pair
 // of elements.
 inline constexpr double default_viscosity = 27;

@@ -1,6 +1,6 @@
 // A drive acts on the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat].
 // Reader, model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in
-// one loop each. loads/drive_kind.hpp is the register of drives.
+// one loop each. drive_kind.hpp is the register of drives.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 
 #include "model/error.hpp"
 #include "observe/bending.hpp"
+#include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
@@ -16,7 +17,7 @@ void refuse_end_moment(const Scene& scene, const Topology& topology, const Loads
   const TubeType& t = topology.type_of(0);
   const double slip = t.bond.twist / t.element_length, most = largest_torque(t.bond, t.element_length);
   const auto refuse = [&](const std::string& what, const char* remedy) {
-    throw InputError({scene.path, 0, key},
+    throw InputError(place_in(scene, key),
                      fmt::format("{:.4g} nN nm{} are more than {}", load->largest() / units::nN_nm,
                                  load->per_tube ? "" : " in total", what),
                      remedy);

@@ -1,7 +1,6 @@
 #include "scene/finer.hpp"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "io/plain_text.hpp"
+#include "io/toml_text.hpp"
 #include "scene/bounds.hpp"
 #include "scene/drive_kind.hpp"
 #include "scene/laws/contact_law_kind.hpp"
@@ -150,7 +150,7 @@ std::string why_not_finer(const Scene& scene, const Topology& topology) {
 }
 
 std::string finer_scene_text(const Scene& scene, const Prepared& prepared, const std::string& comment) {
-  toml::table top = toml::parse(scene.text);
+  toml::table top = parsed_toml(scene.text, scene.path);
   top.insert_or_assign("name", scene.name);
   top.insert_or_assign("element_length_nm", 0.5 * scene.element_length);
   const int elements = halved(prepared.topology, splitting_of(scene)).length_of(0);

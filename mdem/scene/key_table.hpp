@@ -136,6 +136,10 @@ struct KeyOf {
     doc.counts_held = true;
     return std::move(*this);
   }
+  KeyOf of_pace(SceneKey::Pace pace) && {
+    doc.pace = pace;
+    return std::move(*this);
+  }
   KeyOf is_tube_size(SceneKey::TubeSize size) && {
     doc.tube_size = size;
     return std::move(*this);

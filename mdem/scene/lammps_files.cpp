@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <type_traits>
@@ -14,13 +16,14 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* start_format = "ropewalk-lammps-1";
+constexpr const char* start_format = "ropewalk-lammps-2";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
@@ -30,6 +33,12 @@ void visit_start(S&& s, const Visit& v) {
   v({"time_step_ps", "ps", "time step"}, s.time_step);
   v({"work_eV", "eV", "work done by the loads so far"}, s.work);
   v({"dissipated_eV", "eV", "energy taken out by damping so far"}, s.dissipated);
+  v({"heat_eV", "eV", "energy brought in by the thermostat so far"}, s.heat);
+  v({"lineage", "", "key of the random numbers: another one for a scene that goes on from a state"}, s.lineage);
+  v({"strands_begin_with_tubes", "", "the first tube of each strand; empty: each tube is a strand"},
+    s.strand_begin);
+  v({"strand_holes_nm", "nm", "between the tubes of a strand at the start: their sum, of the strand with most"},
+    s.strand_holes);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
@@ -71,6 +80,7 @@ constexpr std::array<OutputColumn, 1 + lammps_row_numbers> row_columns = {{
     {"kinetic_eV", "eV", "kinetic energy of translation and rotation"},
     {"work_eV", "eV", "work done by the loads since the start"},
     {"dissipated_eV", "eV", "energy taken out by damping since the start"},
+    {"heat_eV", "eV", "energy brought in by the thermostat since the start"},
 }};
 
 constexpr double most_steps = 1e15;
@@ -94,10 +104,11 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   std::string lacking = scene.source->not_for_lammps();
   for (const auto& drive : scene.drives)
     if (lacking.empty()) lacking = drive->not_for_lammps();
+  if (lacking.empty() && scene.bath() && scene.contact.law == "none") lacking = "thermostat (without contact)";
   if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
   if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
   if (!lacking.empty())
-    throw InputError({scene.path, 0, lacking}, "is not for LAMMPS", "run this scene with `ropewalk run`");
+    throw InputError(place_in(scene, lacking), "is not for LAMMPS", "run this scene with `ropewalk run`");
 }
 
 std::string start_json(const LammpsStart& start) {
@@ -123,8 +134,8 @@ LammpsStart read_start(const LammpsDirectory& dir) {
   } catch (const Json::exception&) {
     throw InputError({path, 0, ""}, "is damaged", export_again);
   }
-  for (const double value :
-       {start.time, start.time_step, start.work, start.dissipated, start.viscosity_inner, start.viscosity_outer})
+  for (const double value : {start.time, start.time_step, start.work, start.dissipated, start.heat,
+                             start.strand_holes, start.viscosity_inner, start.viscosity_outer})
     if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", export_again);
   for (const std::string& name : start.parameters)
     if (has_control_character(name) || name.find('/') != std::string::npos)
@@ -162,14 +173,26 @@ void read_tubes(const LammpsDirectory& dir, Topology& topology) {
   if (topology.tubes() == 0) throw InputError({path, 0, ""}, "holds no tube", export_again);
 }
 
+void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology) {
+  std::vector<int> begin = start.strand_begin;
+  if (begin.empty()) return;
+  begin.push_back(topology.tubes());
+  const bool rise = std::adjacent_find(begin.begin(), begin.end(), std::greater_equal<>()) == begin.end();
+  if (begin.front() != 0 || !rise)
+    throw InputError({dir.start(), 0, "strands_begin_with_tubes"}, "does not fit the tubes of this export",
+                     export_again);
+  topology.groups.strand_begin = std::move(begin);
+  topology.groups.strand_holes = start.strand_holes;
+}
+
 namespace {
 
 constexpr std::array<const char*, 4> of_a_term = {"term", "lost", "drag", "events"};
 
 // Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
-  std::vector<std::string> names = {"time", "stretch", "shear", "bend",      "twist",
-                                    "vdw",  "kinetic", "work",  "dissipated"};
+  std::vector<std::string> names = {"time", "stretch", "shear", "bend",       "twist",
+                                    "vdw",  "kinetic", "work",  "dissipated", "heat"};
   for (int k = 1; k <= terms; ++k)
     for (const char* number : of_a_term) names.push_back(fmt::format("{}{}", number, k));
   return names;
@@ -270,8 +293,8 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     r.terms.resize(terms);
     r.accounts.resize(terms);
     std::size_t column = 0;
-    std::vector<double*> values = {&r.step,  &r.time, &r.stretch, &r.shear, &r.bend,
-                                   &r.twist, &r.vdw,  &r.kinetic, &r.work,  &r.dissipated};
+    std::vector<double*> values = {&r.step, &r.time,    &r.stretch, &r.shear,      &r.bend, &r.twist,
+                                   &r.vdw,  &r.kinetic, &r.work,    &r.dissipated, &r.heat};
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});

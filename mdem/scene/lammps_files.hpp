@@ -21,9 +21,12 @@ namespace ropewalk {
 
 struct LammpsStart {
   std::int64_t step = 0;
-  double time = 0;       // ps
-  double time_step = 0;  // ps
-  double work = 0, dissipated = 0;
+  double time = 0;                                  // ps
+  double time_step = 0;                             // ps
+  double work = 0, dissipated = 0, heat = 0;        // eV
+  std::uint64_t lineage = 0;                        // Scene::lineage
+  std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
+  double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   std::vector<std::string> parameters;              // files, of each tube type
 };
@@ -56,6 +59,8 @@ LammpsStart read_start(const LammpsDirectory& dir);
 std::string tubes_csv(const Topology& topology);
 // Adds the tubes to a topology that has its types. Throws InputError.
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
+// Sets the strands of these tubes. Throws InputError where they do not fit the tubes.
+void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology);
 
 // The facts that the input script needs.
 struct LammpsScript {
@@ -77,11 +82,11 @@ std::string lammps_input(const LammpsScript& script);
 struct LammpsRow {
   double step = 0, time = 0;
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
-  double work = 0, dissipated = 0;
+  double work = 0, dissipated = 0, heat = 0;
   std::vector<double> terms;          // eV, of each force term
   std::vector<TermAccount> accounts;  // likewise
 };
-inline constexpr int lammps_row_numbers = 9;  // without the step and the terms
+inline constexpr int lammps_row_numbers = 10;  // without the step and the terms
 // A last line without its end, as after a kill, is left out.
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms = 0);
 

@@ -45,13 +45,6 @@ bool read(std::ifstream& file, T& value) {
   return static_cast<bool>(file.read(reinterpret_cast<char*>(&value), sizeof value));
 }
 
-std::ifstream opened(const std::string& path) {
-  refuse_devices(path);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw file_error(path, "cannot be opened", errno);
-  return file;
-}
-
 template <class T>
 void append(std::string& to, const T& value) {
   to.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -62,7 +55,7 @@ void append(std::string& to, const T& value) {
 std::vector<OutputColumn> lammps_state_columns() { return {record_columns.begin(), record_columns.end()}; }
 
 std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements) {
-  std::ifstream file = opened(path);
+  std::ifstream file = opened_stream(path);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::vector<StateInFile> found;
   const auto fail = [&](const std::string& what) {
@@ -75,7 +68,7 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
     if (h.step < 0 || h.step > largest_step) fail(fmt::format("{} is no step", h.step));
-    for (const double value : {h.time, h.work, h.dissipated, h.skin})
+    for (const double value : {h.time, h.work, h.dissipated, h.heat, h.skin})
       if (!(std::fabs(value) <= largest_number)) fail("holds a number that is not finite");
     if (s.end() > bytes) break;
     found.push_back(s);
@@ -116,7 +109,7 @@ std::string state_file(StateHeader header, const State& s, const Vec3Array& forc
 }
 
 std::vector<double> memory_in(const std::string& path, const StateInFile& state) {
-  std::ifstream file = opened(path);
+  std::ifstream file = opened_stream(path);
   file.seekg(state.record(state.header.elements));
   std::vector<double> memory(static_cast<std::size_t>(state.header.memory));
   for (double& number : memory) {
@@ -129,7 +122,7 @@ std::vector<double> memory_in(const std::string& path, const StateInFile& state)
 }
 
 LammpsStates::LammpsStates(const std::string& path, const Topology& topology)
-    : path_(path), all_(find_states(path, topology.elements())), file_(opened(path)) {}
+    : path_(path), all_(find_states(path, topology.elements())), file_(opened_stream(path)) {}
 
 bool LammpsStates::next(State& s, Vec3Array& force, Vec3Array& torque) {
   if (next_ == all_.size()) return false;

@@ -1,5 +1,5 @@
 // The binary files of states that `ropewalk export` and `lmp-ropewalk` exchange: rope.state, where LAMMPS begins,
-// and lammps.states, what it writes. A state is a header of 64 bytes and a record of 152 bytes for each element, in
+// and lammps.states, what it writes. A state is a header of 72 bytes and a record of 152 bytes for each element, in
 // the order of the scene, then the memories of the force terms (ForceTerms::memory()), if any; all numbers
 // little-endian. Every process so knows where an element's record is, and many
 // of them read or write one file at once.
@@ -17,17 +17,18 @@
 namespace ropewalk {
 
 // Written last: a state that a kill has cut off has zeros here.
-inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '1'};
+inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '2'};
 
 struct StateHeader {
   std::array<char, 8> mark = state_mark;
   std::int64_t step = 0, elements = 0;
   double time = 0;                  // ps
   double work = 0, dissipated = 0;  // eV
+  double heat = 0;                  // eV, from the thermostat
   double skin = 0;                  // nm, of the neighbour list; 0: there was none
   std::int64_t memory = 0;          // numbers behind the records, of the force terms
 };
-static_assert(sizeof(StateHeader) == 64, "this is the format of the file");
+static_assert(sizeof(StateHeader) == 72, "this is the format of the file");
 
 // One element of a state: position, orientation, velocity, angular velocity, force and torque, as
 // lammps_state_columns() lists their components.

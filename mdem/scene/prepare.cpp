@@ -11,7 +11,9 @@
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/refuse_state.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/state_files.hpp"
 #include "scene/term_damping.hpp"
 #include "sim/dynamics/blow_up.hpp"
@@ -33,7 +35,7 @@ double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
   }
   if (typed < largest) return typed;
   const char* why = limit.damping_rate * largest > 1 ? "the strongest damping" : "the stiffest mode";
-  throw InputError({scene.path, 0, "run.time_step_fs"},
+  throw InputError(place_in(scene, "run.time_step_fs"),
                    fmt::format("{:.4g} fs is not below the stability limit of {:.4g} fs, set by {}",
                                typed / units::fs, largest / units::fs, why),
                    fmt::format("take at most {:.3g}, or \"auto\"", 0.9 * largest / units::fs));
@@ -66,23 +68,25 @@ void refuse_upside_down(const Scene& scene, const Prepared& p) {
 }
 
 void refuse_stop_rules(const Scene& scene) {
-  for (const StopRule& rule : scene.stops)
-    if (!rule.column.empty()) column_of_log(rule.column, {scene.path, 0, "stop.column"});
+  for (std::size_t k = 0; k < scene.stops.size(); ++k)
+    if (const std::string& column = scene.stops[k].column; !column.empty())
+      column_of_log(column, place_in(scene, "stop.column", static_cast<int>(k)));
   if (!scene.stops.empty() && scene.run.mode == RunOptions::Mode::relax)
-    throw InputError({scene.path, 0, "stop"}, "is for dynamics, and run.mode is \"relax\"", "take it away");
+    throw InputError(place_in(scene, "stop"), "is for dynamics, and run.mode is \"relax\"", "take it away");
 }
 
 void refuse_expectations(const Scene& scene, double duration) {
   const bool relaxes = scene.run.mode == RunOptions::Mode::relax;
-  for (const Expectation& e : scene.expected) {
-    column_of_log(e.column, {scene.path, 0, "expect.column"});
-    if (!e.at) continue;
+  for (std::size_t k = 0; k < scene.expected.size(); ++k) {
+    const Expectation& e = scene.expected[k];
+    const auto at = [&](const char* key) { return place_in(scene, key, static_cast<int>(k)); };
+    column_of_log(e.column, at("expect.column"));
+    if (!e.at || e.of_other_scene) continue;
     if (relaxes)
-      throw InputError({scene.path, 0, "expect.at_ps"}, "is a time, and a relaxation has none",
+      throw InputError(at("expect.at_ps"), "is a time, and a relaxation has none",
                        "take it away: the last row is judged");
     if (*e.at > duration * (1 + 1e-9))
-      throw InputError({scene.path, 0, "expect.at_ps"},
-                       fmt::format("is {:.6g}, and the run ends at {:.6g} ps", *e.at, duration),
+      throw InputError(at("expect.at_ps"), fmt::format("is {:.6g}, and the run ends at {:.6g} ps", *e.at, duration),
                        "name an earlier time, or run longer");
   }
 }
@@ -97,7 +101,7 @@ void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
     largest = std::max(
         {largest, load.force.norm(), load.torque.norm() / s.topology().type_of_element(load.element).radius});
   if (largest > 0 && scene.run.goal.force >= largest)
-    throw InputError({scene.path, 0, "run.force_tolerance_nN"},
+    throw InputError(place_in(scene, "run.force_tolerance_nN"),
                      fmt::format("{:.3g} nN are not less than the largest load on an element, {:.3g} nN: the start "
                                  "would pass as relaxed",
                                  scene.run.goal.force / units::nN_nm, largest / units::nN_nm),
@@ -107,7 +111,7 @@ void refuse_loose_tolerance(const Scene& scene, const Simulation& s) {
 // Refuses scenes that the simulator would stop in the first step.
 void refuse_first_step(const Scene& scene, const Simulation& s) {
   const Topology& topology = s.topology();
-  refuse_forces(s.forces(), {scene.path, 0, "state"});
+  refuse_forces(s.forces(), place_in(scene, "state"));
   if (scene.run.mode == RunOptions::Mode::relax) return;
   const double dt = s.time_step(), farthest = MotionBound::radii * topology.largest_radius();
   State kicked = s.state();
@@ -191,7 +195,7 @@ void refuse_cooling(const Scene& scene, const Prepared& p) {
     for (const auto& term : p.interaction.terms)
       if (term->acts_in_kick() && !scene.start.may_cool)
         throw InputError(
-            {scene.path, 0, "thermostat"},
+            place_in(scene, "thermostat"),
             fmt::format("does not go with the force term \"{}\": it acts in the kick, on the velocities "
                         "that the bath gives",
                         term->name()),
@@ -200,7 +204,7 @@ void refuse_cooling(const Scene& scene, const Prepared& p) {
     const double held = cooling.held(bath->coupling);
     if (held < least_held && !scene.start.may_cool)
       throw InputError(
-          {scene.path, 0, "thermostat.temperature_K"},
+          place_in(scene, "thermostat.temperature_K"),
           fmt::format("is {} K, and damping leaves the tubes at about {:.2g} % of that: it takes heat that "
                       "coupling_per_ps = {:.4g} does not replace",
                       words_of(bath->temperature), 100 * held, bath->coupling),
@@ -211,7 +215,7 @@ void refuse_cooling(const Scene& scene, const Prepared& p) {
   const double left = cooling.left(p.duration);
   if (left > 0.5) return;
   throw InputError(
-      {scene.path, 0, "start.temperature_K"},
+      place_in(scene, "start.temperature_K"),
       fmt::format(
           "is {:.4g} K, and damping leaves {:.2g} % of that heat at the end of the run, {:.4g} ps (half of it "
           "after {:.2g} ps)",
@@ -273,18 +277,22 @@ Prepared prepare(Scene& scene) {
   out.duration = scene.run.duration;
   if (out.duration <= 0) out.duration = protocol_time(scene);
   if (out.duration > 0 && out.duration < 0.5 * out.time_step)
-    throw InputError({scene.path, 0, "run.duration_ps"},
+    throw InputError(place_in(scene, "run.duration_ps"),
                      fmt::format("{:.4g} ps are less than half a step of {:.4g} fs: the run would take none",
                                  out.duration, out.time_step / units::fs),
                      "run longer, or set run.time_step_fs");
   if (out.duration / out.time_step > max_steps)
-    throw InputError({scene.path, 0, "run"},
+    throw InputError(place_in(scene, "run"),
                      fmt::format("{:.4g} ps in steps of {:.4g} fs are {:.1g} steps", out.duration,
                                  out.time_step / units::fs, out.duration / out.time_step),
                      fmt::format("at most {:.0g} can be counted; take a larger step or a shorter run", max_steps));
-  if (scene.from_file())
-    refuse_overlaps(out.topology, out.interaction, out.state, {scene.source->file(), 0, ""},
-                    scene.run.mode == RunOptions::Mode::relax);
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  const bool typed = rope && !rope->typed_places.empty();
+  if (scene.from_file() || typed)
+    refuse_overlaps(
+        out.topology, out.interaction, out.state,
+        typed ? place_in(scene, "rope.places_nm") : InputError::Place{scene.source->file(), 0, ""},
+        scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
   return out;
@@ -308,7 +316,7 @@ void refuse_statics(const Scene& scene, const Simulation& simulation) {
         "ramp a load, as by twist.rate_nN_nm_per_ps, or take [statics] away for the one state of rest");
   if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
   const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
-  if (!refused.why.empty()) throw InputError({scene.path, 0, "run.solver"}, refused.why, refused.remedy);
+  if (!refused.why.empty()) throw InputError(place_in(scene, "run.solver"), refused.why, refused.remedy);
 }
 
 }  // namespace

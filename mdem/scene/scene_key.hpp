@@ -23,6 +23,10 @@ struct SceneKey {
   // of them takes of a whole, which matters for "all" alone: the others stay where they are.
   bool numbers_elements = false;
   bool counts_held = false;  // elements at an end of a tube that are held as one, between the same two places
+  // For the same scene done more slowly (scene/slower.hpp): a time goes as the duration, a rate as its inverse. A
+  // course has times in its points, or a rate beside them.
+  enum class Pace { none, time, rate, course };
+  Pace pace = Pace::none;
   // Whether it is the size of every tube of the scene.
   enum class TubeSize { no, length, elements };
   TubeSize tube_size = TubeSize::no;

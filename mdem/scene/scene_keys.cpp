@@ -67,21 +67,25 @@ std::string line_of(const SceneKey& k) {
 }  // namespace
 
 std::string scene_key_help() {
-  std::string text = "Keys of a scene (TOML); `ropewalk new` writes commented ones.\n";
+  std::string text = "Keys of a scene (TOML): name, unit, default, and below them the meaning. `ropewalk new` writes commented ones;\n`ropewalk help links` explains a table with an example.\n";
   for (const SceneTable& t : scene_tables()) {
-    text += "\n" + title_of(t);
-    for (const SceneKey& k : t.keys) text += line_of(k);
+    text += "\n" + title_of(t) + key_lines(t);
   }
   return text;
 }
 
-std::string scene_key_help(const std::string& topic) {
+std::string key_lines(const SceneTable& table) {
+  std::string text;
+  for (const SceneKey& k : table.keys) text += line_of(k);
+  return text;
+}
+
+std::string scene_key_help(const std::string& key) {
   std::string text;
   for (const SceneTable& t : scene_tables()) {
-    const bool whole = !t.name.empty() && (topic == t.name || topic == t.header());
     std::string lines;
     for (const SceneKey& k : t.keys)
-      if (whole || k.key == topic) lines += line_of(k);
+      if (k.key == key) lines += line_of(k);
     if (!lines.empty()) text += (text.empty() ? "" : "\n") + title_of(t) + lines;
   }
   return text;

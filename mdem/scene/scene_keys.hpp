@@ -12,8 +12,9 @@ std::vector<SceneKey> scene_keys();
 
 // A table of all of them for the program's help.
 std::string scene_key_help();
-// Of the scene's table of this name, as in "links" or "[links]", or of all keys of this name; empty: there are
-// none.
-std::string scene_key_help(const std::string& topic);
+// Of all keys of this name; empty: there are none.
+std::string scene_key_help(const std::string& key);
+// A line or two for each key of a table.
+std::string key_lines(const SceneTable& table);
 
 }  // namespace ropewalk

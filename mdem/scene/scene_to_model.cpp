@@ -97,6 +97,10 @@ std::vector<EndContact> end_contacts(const Scene& scene) {
   return kind && kind->ends ? kind->ends(scene) : std::vector<EndContact>();
 }
 
+bool ends_meet(const Scene& scene, const Topology& topology) {
+  return topology.strands() < topology.tubes() && !end_contacts(scene).empty();
+}
+
 void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction) {
   if (topology.groups.ends_meet) add_term(tube_ends_term(end_contacts(scene), topology), interaction);
 }

@@ -49,6 +49,8 @@ double least_exclusion(const Scene& scene, const ContactLaw* law);
 Interaction interaction_of(const Scene& scene, std::shared_ptr<const ContactLaw> law);
 inline Interaction interaction_of(const Scene& scene) { return interaction_of(scene, contact_law(scene)); }
 
+// TubeGroups::ends_meet, of tubes that have their strands.
+bool ends_meet(const Scene& scene, const Topology& topology);
 // Adds the contact of ends in line, where these meet (TubeGroups::ends_meet).
 void add_end_contacts(const Scene& scene, const Topology& topology, Interaction& interaction);
 // Adds the force terms of the drives, and the contact of ends in line. Throws InputError for elements that do not

@@ -117,6 +117,8 @@ void read_tables(const TomlTable& top, Scene& scene) {
   scene.limits = limits_table().read(top.table("limits"), scene);
   for (const TomlTable& t : top.tables("stop")) scene.stops.push_back(stop_table().read(t, scene));
   for (const TomlTable& t : top.tables("expect")) scene.expected.push_back(expect_table().read(t, scene));
+  for (Expectation& e : scene.expected)
+    e.of_other_scene = !e.scene_hash.empty() && e.scene_hash != what_is_run_hash(scene.text);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "model/error.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/refuse_state.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/state_csv.hpp"
 #include "scene/state_files.hpp"
@@ -52,7 +53,7 @@ void check_length_of_law(const Scene& scene) {
   const ContactLawKind* kind = contact_law_kind(scene.contact.law);
   const double own = scene.parameters().element_length;
   if (kind && !kind->any_element_length && std::fabs(scene.element_length / own - 1) > 1e-6)
-    throw InputError({scene.path, 0, "--law"},
+    throw InputError(place_in(scene, "--law"),
                      fmt::format("law \"{}\" holds for elements of {:.6g} nm, and these have {:.6g} nm", kind->name,
                                  own, scene.element_length),
                      "use a set with the line law, or --law none");
@@ -60,6 +61,7 @@ void check_length_of_law(const Scene& scene) {
 
 void check_types(const SingleState& s) {
   const int sets = static_cast<int>(s.parameters.size());
+  if (sets == 0) throw InputError({"", 0, "parameters"}, "names no parameter set", "name one");
   if (sets > 1 && s.tube_types.empty())
     throw InputError({"", 0, "--tube-types"}, fmt::format("is missing, and there are {} sets", sets),
                      "say for each tube which of them it is, as in 0,1,1");
@@ -67,6 +69,28 @@ void check_types(const SingleState& s) {
     if (type < 0 || type >= sets)
       throw InputError({"", 0, "--tube-types"}, fmt::format("names type {} of {}", type, sets),
                        fmt::format("types run from 0 to {}", sets - 1));
+}
+
+// Tubes beyond the twist at which tubes of their whole length collapse: between held ends they collapse later.
+std::string note_of_collapse(const std::vector<ParameterSet>& sets, const Topology& topology, const State& state) {
+  long beyond = 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    const auto& known = sets[static_cast<std::size_t>(topology.tube_type[static_cast<std::size_t>(t)])].anharmonic;
+    if (!type.bond.anharmonic.used || !known || !(type.bond.anharmonic.max_shear < known->max_shear)) continue;
+    const double most = type.bond.anharmonic.max_shear / type.radius * type.element_length;
+    for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      beyond +=
+          std::fabs(bond_twist_angle(frame_of(state.orientation[k]), frame_of(state.orientation[k + 1]))) > most;
+    }
+  }
+  if (beyond == 0) return "";
+  return fmt::format(
+      "{} bonds are twisted beyond the collapse of a tube of its whole length. Where a scene holds elements, the "
+      "tubes between them are shorter and collapse later. The energy of twist is then another one: give the free "
+      "length that `ropewalk check` prints, by --free-length-nm.",
+      beyond);
 }
 
 }  // namespace
@@ -103,8 +127,11 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
-  EvaluatedState out{build(scene), Forces()};
-  Interaction interaction = interaction_of(scene, out.built.law);
+  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces(), ""};
+  for (std::size_t type = 0; scene.bond.anharmonic && s.free_length > 0 && type < scene.sets.size(); ++type)
+    out.built.topology.types[type].bond = scene.sets[type].anharmonic_bond(s.free_length);
+  if (!(s.free_length > 0)) out.note = note_of_collapse(scene.sets, out.built.topology, out.built.state);
+  Interaction& interaction = out.interaction = interaction_of(scene, out.built.law);
   add_end_contacts(scene, out.built.topology, interaction);
   begin_with(scene.memory, out.built.topology, interaction);
   out.forces = forces_of(out.built.topology, interaction, out.built.state, s.reference, {scene.path, 0, ""});

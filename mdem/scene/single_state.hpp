@@ -20,12 +20,16 @@ struct SingleState {
   std::string bond;                     // "harmonic" or "anharmonic"; empty: anharmonic where all sets have it
   bool legacy_torque = false;
   double exclude_along_tube = 0;  // nm; 0: as a scene has it
+  double free_length = 0;         // nm, between what holds the tubes: they collapse by it; 0: the whole length
   bool reference = false;         // by the plain path over all pairs
 };
 
 struct EvaluatedState {
+  std::vector<ParameterSet> sets;
   BuiltScene built;
+  Interaction interaction;
   Forces forces;
+  std::string note;  // what the energy depends on and a state does not say; may be empty
 };
 // Throws InputError, which names the options of `ropewalk energy`.
 EvaluatedState evaluate(const SingleState& state);

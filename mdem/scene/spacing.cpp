@@ -46,6 +46,12 @@ double largest_radius(const Scene& scene) {
   return largest;
 }
 
+double own_element_length(const Scene& scene) {
+  double sum = 0;
+  for (const ParameterSet& set : scene.sets) sum += set.element_length;
+  return sum / static_cast<double>(scene.sets.size());
+}
+
 double parallel_spacing(const Scene& scene, const ContactLaw* law) {
   return largest_distance(scene, law, &ContactLaw::parallel_distance);
 }

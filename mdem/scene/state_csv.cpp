@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 
 #include "io/csv_reader.hpp"
+#include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "io/toml_table.hpp"  // printable
 #include "model/error.hpp"
@@ -44,12 +46,16 @@ constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 // Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of
 // half or twice the length lie beyond them.
 constexpr double shortest_usual = 0.75, longest_usual = 1.34;
+// Bounds of a single bond over the element length. A line that is missing doubles one; a kink of 90 degrees makes
+// it 0.7.
+constexpr double shortest_single = 0.5, longest_single = 1.5;
 constexpr const char* length_words = "element_length_nm: ";
 constexpr const char* types_words = "tube_types: ";
 constexpr const char* strands_words = "strands_begin_with_tubes: ";
 constexpr const char* ropes_words = "ropes_begin_with_strands: ";
 constexpr const char* memory_words = "memory: ";
 constexpr const char* broken_words = "broken_behind_elements: ";
+constexpr const char* written_words = "elements_and_sum: ";
 
 struct Row {
   int tube = 0;
@@ -91,6 +97,34 @@ int stated_sets(const CsvReader& csv) {
     }
   }
   return 0;
+}
+
+// A sum over all numbers of a state, by which a file shows that it is as it was written: 84 elements, 16 hex
+// digits.
+class StateSum {
+ public:
+  void add(int tube, const std::array<double, 13>& numbers) {
+    ++elements_;
+    hash_.append(reinterpret_cast<const char*>(&tube), sizeof tube);
+    for (const double number : numbers) {
+      const double same = number + 0.0;  // -0 is 0
+      hash_.append(reinterpret_cast<const char*>(&same), sizeof same);
+    }
+    hash_ = hash_hex(hash_);
+  }
+  long elements() const { return elements_; }
+  std::string words() const { return fmt::format("{}, {}", elements_, hash_); }
+
+ private:
+  long elements_ = 0;
+  std::string hash_;  // of the one before and this element
+};
+
+std::string stated_sum(const CsvReader& csv) {
+  for (const std::string_view comment : csv.comments())
+    if (comment.rfind(written_words, 0) == 0)
+      return std::string(comment.substr(std::string_view(written_words).size()));
+  return "";
 }
 
 // The numbers that a comment before the present line lists behind `words`, rising from 0; none: no comment does.
@@ -150,6 +184,7 @@ class StateReader {
       if (rows_.empty()) {
         check_length();
         check_sets();
+        stated_sum_ = stated_sum(csv_);
         topology_.groups.strand_begin = stated_strands(csv_);
         broken_ = stated_breaks(csv_);
         topology_.groups.rope_begin = stated_begins(csv_, ropes_words, "ropes", "strand of each rope");
@@ -161,7 +196,9 @@ class StateReader {
       rows_.push_back(row);
     }
     if (rows_.empty()) fail("", "has no elements", "write one line for each, below the header");
+    check_sum();
     if (!stated_) check_spacing();
+    if (stated_sum_.empty() && far_bond_) throw InputError(*far_bond_);
     check_breaks();
     close_strands();
     close_ropes();
@@ -178,8 +215,25 @@ class StateReader {
     bool right = columns_here_ == columns_at_rest || columns_here_ == columns.size();
     for (std::size_t k = 0; right && k < columns_here_; ++k) right = csv_.cells()[k] == columns[k].name;
     if (!right)
-      fail("", fmt::format("the header is \"{}\"", printable(std::string(csv_.line_text()), 60)),
+      // Without its words: a scene of a stranger may name any file.
+      fail("", "its first line is not the header of a state",
            fmt::format("it must be {0}, or {1}", header, whole_header));
+  }
+
+  // Elements and numbers are those that were written. Lines that are missing at the end of a tube, or numbers of
+  // another unit, would else be a state as good as any.
+  void check_sum() const {
+    if (stated_sum_.empty() || stated_sum_ == sum_.words()) return;
+    const std::string elements = stated_sum_.substr(0, stated_sum_.find(','));
+    if (far_bond_) throw InputError(*far_bond_);
+    throw InputError(
+        {path_, 0, ""},
+        elements == std::to_string(sum_.elements())
+            ? "its numbers are not those that were written"
+            : fmt::format("has {} elements, and {} were written", sum_.elements(), printable(elements, 20)),
+        fmt::format(
+            "bring it back from a copy; if you changed it yourself, take the line \"# {}...\" out of its header",
+            written_words));
   }
 
   void check_breaks() const {
@@ -255,8 +309,7 @@ class StateReader {
            "--tube-types of `ropewalk energy`");
   }
 
-  // Checks the spacing in a file that does not state its element length. A file that states the length is trusted:
-  // it may hold the state of a run that blew up.
+  // Checks the spacing in a file that does not state its element length.
   void check_spacing() const {
     std::size_t first = 0;
     for (int t = 0; t < topology_.tubes(); ++t, first = static_cast<std::size_t>(topology_.tube_begin[t])) {
@@ -277,12 +330,15 @@ class StateReader {
     }
   }
 
-  Row parsed() const {
+  Row parsed() {
     if (csv_.cells().size() != columns_here_)
       fail("", fmt::format("has {} columns", csv_.cells().size()),
            fmt::format("{} are needed, as the header has", columns_here_));
     std::array<double, columns.size()> value{};
     for (std::size_t k = 0; k < columns_here_; ++k) value[k] = number(k);
+    std::array<double, columns.size() - 1> numbers;
+    std::copy(value.begin() + 1, value.end(), numbers.begin());
+    sum_.add(tube_number(value[0]), numbers);
     const Quaternion q(value[4], value[5], value[6], value[7]);
     if (!(std::fabs(q.norm() - 1) <= norm_slack))
       fail("qw", fmt::format("the quaternion has length {:.6g}", q.norm()), "it must be 1 within 0.001");
@@ -327,6 +383,13 @@ class StateReader {
     if (bond < shortest_bond || bond > longest_bond)
       fail("", fmt::format("lies {:.3g} nm from the element before it", bond * element_length_),
            fmt::format("elements of a tube follow one another at {:.4g} nm", element_length_));
+    // The state of a run that blew up may have such a bond: where the sum is right, the file has.
+    if (!far_bond_ && (bond < shortest_single || bond > longest_single))
+      far_bond_ = csv_.error(
+          "", fmt::format("lies {:.3g} nm from the element before it", bond * element_length_),
+          fmt::format(
+              "elements of a tube follow one another at {:.4g} nm: is a line missing, or are lengths not in nm?",
+              element_length_));
     const Vector3 along = row.position - rows_.back().position;
     if (along.dot(axis_of(rows_.back().orientation)) <= 0 || along.dot(axis_of(row.orientation)) <= 0)
       fail("qw", "the tube folds back: the bond to the element before it stands across or against an axis",
@@ -350,9 +413,12 @@ class StateReader {
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   std::size_t columns_here_ = 0;
-  bool stated_ = false;      // the length, by the file
-  std::vector<int> broken_;  // elements
-  std::vector<int> joined_;  // tubes of the file that are the next part of a broken one
+  bool stated_ = false;     // the length, by the file
+  std::string stated_sum_;  // empty: the file has none
+  StateSum sum_;
+  std::optional<InputError> far_bond_;  // the first
+  std::vector<int> broken_;             // elements
+  std::vector<int> joined_;             // tubes of the file that are the next part of a broken one
 };
 
 }  // namespace
@@ -372,11 +438,6 @@ void read_state_csv(const std::string& path, Topology& topology, State& state) {
 double state_element_length(const std::string& path) {
   CsvReader csv(path);
   return csv.next() && csv.next() ? stated_length(csv) : 0;
-}
-
-bool state_has_strands(const std::string& path) {
-  CsvReader csv(path);
-  return csv.next() && csv.next() && !stated_strands(csv).empty();
 }
 
 StateNotes read_state_notes(const std::string& path) {
@@ -401,15 +462,18 @@ std::string state_csv(const Topology& topology, const State& s, const StateNotes
                         fmt::join(topology.groups.rope_begin.begin(), topology.groups.rope_begin.end() - 1, ","));
   if (!notes.memory.empty()) text += fmt::format("# {}{}\n", memory_words, notes.memory);
   if (!notes.broken.empty()) text += fmt::format("# {}{}\n", broken_words, fmt::join(notes.broken, ","));
+  std::string rows;
+  StateSum sum;
   for (int t = 0; t < topology.tubes(); ++t)
     for (int e = topology.tube_begin[t]; e < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
       const Vector3 x = s.position[i], v = s.velocity[i], w = s.angular_velocity[i];
       const Quaternion q = s.orientation[i];
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", t, x.x(), x.y(), x.z(), q.w(), q.x(),
+      rows += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", t, x.x(), x.y(), x.z(), q.w(), q.x(),
                           q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z());
+      sum.add(t, {x.x(), x.y(), x.z(), q.w(), q.x(), q.y(), q.z(), v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
     }
-  return text;
+  return text + fmt::format("# {}{}\n", written_words, sum.words()) + rows;
 }
 
 }  // namespace ropewalk

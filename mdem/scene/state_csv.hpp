@@ -5,7 +5,8 @@
 // parameter sets each tube has, "# strands_begin_with_tubes: 0,3" which tubes follow one another in line, and
 // "# ropes_begin_with_strands: 0,7" which make a rope of their own; a file may leave them out. A tube that has
 // broken stands there as two, and "# broken_behind_elements: 12" says where; it is read as the one tube that it
-// was.
+// was. "# elements_and_sum: 84, 5f0e..." is a sum (xxh64) over all numbers: a file that was cut or scaled is
+// refused.
 #pragma once
 
 #include <string>
@@ -26,14 +27,12 @@ struct StateNotes {
 };
 
 // Fills tubes and state; all elements have the length of the first of topology.types. Throws InputError with file,
-// line and column, also where the file states another length or more parameter sets, or states no length and
-// neighbours along a tube lie at another.
+// line and column, also where the file states another length, more parameter sets or another sum, or states no sum
+// and neighbours along a tube lie at another length.
 void read_state_csv(const std::string& path, Topology& topology, State& state);
 
 // The length (nm) that a state file states; 0 where it states none. Throws InputError.
 double state_element_length(const std::string& path);
-// Whether the file says that its tubes follow one another in strands (TubeGroups::strand_begin).
-bool state_has_strands(const std::string& path);
 
 StateNotes read_state_notes(const std::string& path);
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "atomistic/finite_tube.hpp"
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 #include "friction/sliding.hpp"
 #include "friction/strength.hpp"
 

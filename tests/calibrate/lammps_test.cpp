@@ -1,5 +1,5 @@
 // LAMMPS as a child process: its messages, and every way in which it can end.
-#include "atomistic/lammps.hpp"
+#include "atoms/lammps.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include <sstream>
 #include <thread>
 
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 #include "signals.hpp"
 
 namespace ropewalk::calibrate {
@@ -182,6 +182,17 @@ TEST_F(Lammps, ChildThatWritesButNeverEndsIsEnded) {
   options.quiet_seconds = 0.5;
   options.max_seconds = 1.2;
   EXPECT_THAT(message<LammpsError>("units metal\n", options), HasSubstr("longer than 1.2 s"));
+}
+
+TEST_F(Lammps, ChildThatFloodsIsEnded) {
+  LammpsOptions options;
+  options.most_bytes = 1 << 20;
+  for (const char* flood : {"exec yes", "yes", "yes > case.log", "exec yes > a-file-that-nobody-watches"}) {
+    options.program = script(flood);
+    EXPECT_THAT(message<LammpsError>("units metal\n", options), HasSubstr("wrote more than 1 MiB and was ended"))
+        << flood;
+    for (const auto& file : fs::directory_iterator(folder)) EXPECT_LE(fs::file_size(file), 1u << 20) << file;
+  }
 }
 
 TEST_F(Lammps, SignalIsNamed) {

@@ -1,5 +1,5 @@
 // Atoms of tubes, by counting and measuring: every bond, every neighbour, the twist and the hand.
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // has them, against the integral over the two shells.
 #include <gtest/gtest.h>
 
-#include "atomistic/lattice.hpp"
 #include "atomistic/stiffness.hpp"
+#include "atoms/lattice.hpp"
 #include "contact/integral.hpp"
 #include "io/parameters_toml.hpp"
 #include "scene/laws/line.hpp"

@@ -65,11 +65,60 @@ TEST_F(Campaign, TableIsTheSameAfterInterruptions) {
   EXPECT_EQ(
       lines(means.out)[0],
       "point,rope.tubes,thermostat.temperature_K,start.seed,status,first_limit,first_limit_ps,time_ps,kinetic_eV,"
-      "kinetic_eV_error,limits_passed");
+      "kinetic_eV_error,kinetic_eV_correlation_ps,limits_passed");
   EXPECT_NE(means.err.find("_seed-1: 4 ps are too short for an error of kinetic_eV"), std::string::npos)
       << means.err;
   EXPECT_EQ(lines(run("gather whole --series --columns time_ps").out).size(), 1 + 8 * 13u);
   EXPECT_EQ(run("gather parts --columns nothing").code, 2);
+}
+
+TEST_F(Campaign, ExpectationsAreCounted) {
+  spit(dir / "tube.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-paper"
+[chain]
+elements = 5
+[run]
+duration_ps = 1
+[[expect]]
+column = "time_ps"
+value = 1
+tolerance = 0.2
+[[expect]]
+column = "kinetic_eV"
+value = 0
+tolerance = 1e-9
+)");
+  spit(dir / "t.toml", "format = \"ropewalk-sweep-1\"\nscene = \"tube.toml\"\n[vary]\nrun.duration_ps = [1, 2]\n");
+  const Outcome o = run("sweep t.toml --quiet");
+  EXPECT_EQ(o.code, 8) << o.err;
+  EXPECT_NE(o.out.find("duration_ps-2: time_ps is 2"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("3 of 4 expectations hold; 1 of the points miss one"), std::string::npos) << o.out;
+  const std::string table = slurp(dir / "t" / "table.csv");
+  EXPECT_NE(table.find(",expected,missed,limits_passed\n"), std::string::npos) << table;
+  EXPECT_NE(table.find(",2,0,"), std::string::npos) << table;
+  EXPECT_NE(table.find(",2,1,"), std::string::npos) << table;
+  EXPECT_EQ(run("sweep t.toml --quiet --only 1").code, 0);
+}
+
+// An expectation of another scene is told, and not judged.
+TEST_F(Campaign, AnExpectationOfAnotherSceneIsNotJudged) {
+  const std::string scene =
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 5\n[run]\nduration_ps "
+      "= 1\n";
+  const auto expecting = [](const std::string& hash) {
+    return "[[expect]]\ncolumn = \"time_ps\"\nvalue = 7\ntolerance = 1\nscene_hash = \"" + hash + "\"\n";
+  };
+  spit(dir / "a.toml", scene + expecting("0"));
+  const Outcome check = run("check a.toml");
+  std::smatch hash;
+  ASSERT_TRUE(std::regex_search(check.out, hash, std::regex("\nscene_hash \"([0-9a-f]+)\"\n"))) << check.out;
+  EXPECT_NE(check.out.find("not judged: time_ps 7"), std::string::npos) << check.out;
+  const Outcome other = run("run a.toml --out a --quiet");
+  EXPECT_EQ(other.code, 0) << other.err;
+  EXPECT_NE(other.err.find("is not judged"), std::string::npos) << other.err;
+  spit(dir / "b.toml", "# a remark\n" + scene + expecting(hash[1].str()));
+  EXPECT_EQ(run("run b.toml --out b --quiet").code, 8);
 }
 
 TEST_F(Campaign, BranchesGoOnFromOneStart) {

@@ -58,10 +58,10 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   }
   EXPECT_EQ(run("help run").out, run("run --help").out);
   const std::string links = run("help links").out;
-  EXPECT_EQ(links.find("[[links]]  "), 0u) << links;
+  EXPECT_EQ(links.find("[[links]]\n"), 0u) << links;
   EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
-  EXPECT_EQ(links.find("length_nm"), std::string::npos) << links;
-  EXPECT_EQ(run("help '[run]'").out.find("[run]  "), 0u);
+  EXPECT_EQ(links.find("spacing_nm"), std::string::npos) << links;
+  EXPECT_EQ(run("help '[run]'").out.find("[run]\n"), 0u);
   const std::string length = run("help length_nm").out;
   for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
     EXPECT_NE(length.find(word), std::string::npos) << length;
@@ -335,6 +335,27 @@ TEST_F(Cli, ARunThatIsNotAsExpectedHasAnExitCode) {
   EXPECT_THAT(judged.out, HasSubstr("at 0.5 ps, not as expected: 7 ± 1"));
 }
 
+class Templates : public Cli {
+ protected:
+  // Each carries what it gives.
+  void give_what_they_expect(const std::vector<std::string>& kinds) const {
+    for (const std::string& kind : kinds) {
+      ASSERT_EQ(run("new " + kind + " --kind " + kind).code, 0) << kind;
+      const Outcome o = run("run " + kind + ".toml --out " + kind + " --quiet");
+      EXPECT_EQ(o.code, 0) << kind << "\n" << o.out << o.err;
+      EXPECT_THAT(o.out, HasSubstr("as expected: ")) << kind;
+    }
+  }
+};
+using TemplatesLong = Templates;
+
+TEST_F(Templates, GiveWhatTheyExpect) { give_what_they_expect({"chain", "relax", "pull-out"}); }
+
+TEST_F(TemplatesLong, GiveWhatTheyExpect) {
+  give_what_they_expect({"pull-out-outer", "load-transfer", "twist-to-failure", "interior", "strands", "bend",
+                         "bundle", "film", "hot-chain", "constant-tension"});
+}
+
 // The published radius, 3.05 nm, counts second neighbours: inner tubes stay those of the packing, and Q is no 0
 // that looks like a perfect one.
 TEST_F(Cli, ARadiusForQThatReachesSecondNeighboursIsTold) {
@@ -531,8 +552,9 @@ TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   const Outcome turned = run("export r.toml --lammps there");
   EXPECT_EQ(turned.code, 2);
   EXPECT_NE(turned.err.find("run.integrator: is not for LAMMPS"), std::string::npos) << turned.err;
-  small_rope("t.toml", "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n");
-  EXPECT_NE(run("export t.toml --lammps there").err.find("thermostat: is not for LAMMPS"), std::string::npos);
+  small_rope("t.toml", "[contact]\nlaw = \"none\"\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n");
+  EXPECT_NE(run("export t.toml --lammps there").err.find("thermostat (without contact): is not for LAMMPS"),
+            std::string::npos);
   EXPECT_FALSE(fs::exists(dir / "there"));
 }
 
@@ -772,29 +794,31 @@ TEST_F(Cli, RunHasAllCoresWhereThreadsAreBound) {
   if (free == 1) GTEST_SKIP() << "this machine has one core";
 }
 
-// Where the scene is a pipe, the program has begun when the pipe is open, and waits. A program that was started
-// anew has the setting of its own in the environment that it began with.
+// The scene comes by standard input. It is longer than a pipe holds, so that the program has begun to read where
+// all of it is written, and then waits for its end. A program that was started anew has the setting of its own in
+// the environment that it began with.
 TEST_F(Cli, OnlyStepsOnSeveralThreadsStartTheProgramAnew) {
   const auto began_with = [&](const std::string& arguments, const std::string& environment = "") {
-    const std::string command =
-        "cd '" + dir.string() + "' && rm -f s.toml && mkfifo s.toml || exit 1\n" +
-        "env -u GOMP_SPINCOUNT -u OMP_WAIT_POLICY " + environment + " '" ROPEWALK_PROGRAM "' " + arguments +
-        " > /dev/null 2>&1 & program=$!\n" +
-        "exec 3> s.toml && tr '\\0' '\\n' < /proc/$program/environ | grep ^GOMP_ > began.txt\n" +
-        "exec 3>&-; wait $program";
+    const std::string command = "cd '" + dir.string() + "' && rm -f s.toml && mkfifo s.toml || exit 1\n" +
+                                "env -u GOMP_SPINCOUNT -u OMP_WAIT_POLICY " + environment +
+                                " '" ROPEWALK_PROGRAM "' " + arguments +
+                                " < s.toml > /dev/null 2>&1 & program=$!\n" +
+                                "exec 3> s.toml && head -c 200000 /dev/zero | tr '\\0' '#' >&3 && tr '\\0' '\\n' < "
+                                "/proc/$program/environ | grep ^GOMP_ > began.txt\n" +
+                                "exec 3>&-; wait $program";
     std::system(command.c_str());
     return slurp(dir / "began.txt");
   };
   const std::string anew = "GOMP_SPINCOUNT=2000\n";
-  EXPECT_EQ(began_with("run s.toml --out d --threads 1"), "");
-  EXPECT_EQ(began_with("run s.toml --out d --threads 2"), anew);
-  EXPECT_EQ(began_with("run --threads 2 --out d s.toml"), anew);
-  EXPECT_EQ(began_with("run s.toml --out d", "OMP_NUM_THREADS=1"), "");
-  EXPECT_EQ(began_with("run s.toml --out d", "OMP_NUM_THREADS=2"), anew);
-  EXPECT_EQ(began_with("run s.toml --out d --threads 2", "GOMP_SPINCOUNT=7"), "GOMP_SPINCOUNT=7\n");
-  EXPECT_EQ(began_with("bench s.toml"), "");
-  EXPECT_EQ(began_with("bench s.toml --threads 1,2"), anew);
-  EXPECT_EQ(began_with("check s.toml", "OMP_NUM_THREADS=2"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 1"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 2"), anew);
+  EXPECT_EQ(began_with("run --threads 2 --out d /dev/stdin"), anew);
+  EXPECT_EQ(began_with("run /dev/stdin --out d", "OMP_NUM_THREADS=1"), "");
+  EXPECT_EQ(began_with("run /dev/stdin --out d", "OMP_NUM_THREADS=2"), anew);
+  EXPECT_EQ(began_with("run /dev/stdin --out d --threads 2", "GOMP_SPINCOUNT=7"), "GOMP_SPINCOUNT=7\n");
+  EXPECT_EQ(began_with("bench /dev/stdin"), "");
+  EXPECT_EQ(began_with("bench /dev/stdin --threads 1,2"), anew);
+  EXPECT_EQ(began_with("check /dev/stdin", "OMP_NUM_THREADS=2"), "");
 }
 
 TEST_F(Cli, ResumeCutsOffWhatWasWrittenAfterTheCheckpoint) {
@@ -1231,6 +1255,92 @@ duration_ps = 10
   EXPECT_NE(table.out.find("No error is stated of, and none carried from: damping.contact"), std::string::npos)
       << table.out;
   EXPECT_EQ(table.out.find("0.000000000"), std::string::npos) << "zero by symmetry";
+}
+
+// A tube that is bent by a force at its end: elements of half the length tell how far the energy is off that of a
+// rod, here taken from elements of an eighth of the length.
+TEST_F(Cli, NumericsTellHowFarARodIsOff) {
+  const auto chain = [&](const std::string& name, int elements, double length) {
+    spit(dir / (name + ".toml"),
+         "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\nelement_length_nm = " +
+             std::to_string(length) + "\n[chain]\nelements = " + std::to_string(elements) +
+             "\n[contact]\nlaw = \"none\"\n[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"force\"\n"
+             "elements = [-1]\nforce_nN = [0.3, 0, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-7\n");
+    ASSERT_EQ(run("run " + name + ".toml --out " + name + " --quiet").code, 0) << slurp(dir / "stderr.txt");
+  };
+  chain("r", 9, 4);
+  chain("finest", 65, 0.5);
+  const Outcome o = run("errors r --numerics --json --quiet");
+  ASSERT_EQ(o.code, 0) << o.err;
+  const Json found = Json::parse(o.out), bend = found.at("at_the_end").at("bend_eV");
+  const double off =
+      bend.at("value").get<double>() - ropewalk::read_log((dir / "finest/log.csv").string()).back()["bend_eV"];
+  EXPECT_GT(std::fabs(off), 0.005 * bend.at("value").get<double>());
+  EXPECT_NEAR(bend.at("parts").at("elements").get<double>(), std::fabs(off), 0.1 * std::fabs(off)) << bend;
+  EXPECT_LT(bend.at("parts").at("tolerance").get<double>(), 0.1 * std::fabs(off));
+  EXPECT_EQ(bend.at("decides"), "elements");
+  EXPECT_EQ(found.at("remarks").back(),
+            "Not repeated, another start: nothing in the scene is random, and a relaxation takes no velocities");
+  EXPECT_EQ(run("errors r --numerics --mean 1 --quiet").code, 2);
+}
+
+// A rope whose expectation holds for it alone, not for the repetition that takes twice as long.
+TEST_F(Cli, TheWholeErrorHasFourParts) {
+  spit(dir / "rope.toml", R"(
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[bond]
+law = "harmonic"
+[rope]
+tubes = 7
+length_nm = 7
+[[grip]]
+end = "lower"
+[[grip]]
+end = "upper"
+about_z = { rotation_deg = [[0, 0], [4, 3], [6, 3]] }
+[run]
+log_every_ps = 0.2
+[[expect]]
+column = "time_ps"
+value = 6
+tolerance = 0.2
+)");
+  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
+  const Outcome o = run("errors r --numerics");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.err.find("14 runs, which cost as much as "), std::string::npos) << o.err;
+  EXPECT_TRUE(std::regex_search(
+      o.out, std::regex("\ntorque_upper_nN_nm +[0-9.]+ +\\S+ +(≤ )?\\S+ +\\S+ +\\S+ +[a-zA-Z ]+\n")))
+      << o.out;
+  EXPECT_NE(o.out.find("What would halve it: "), std::string::npos) << o.out;
+  const auto made = fs::last_write_time(dir / "r/errors/half-rate/log.csv");
+  const Outcome json = run("errors r --numerics --json --quiet");
+  ASSERT_EQ(json.code, 0) << json.err;
+  EXPECT_EQ(fs::last_write_time(dir / "r/errors/half-rate/log.csv"), made) << "finished runs are kept";
+  const Json found = Json::parse(json.out), torque = found.at("at_the_end").at("torque_upper_nN_nm");
+  EXPECT_EQ(torque.at("parts").size(), 3u) << torque;
+  EXPECT_EQ(found.at("starts").size(), 3u);
+  for (const char* part : {"statistics", "numerics", "parameters", "potential"})
+    EXPECT_GT(torque.at(part).get<double>(), 0) << part;
+  EXPECT_NEAR(torque.at("error").get<double>(),
+              std::hypot(std::hypot(torque.at("statistics").get<double>(), torque.at("numerics").get<double>()),
+                         std::hypot(torque.at("parameters").get<double>(), torque.at("potential").get<double>())),
+              1e-9);
+  // The same number in the rows, in the page and in the curves.
+  const auto last = [&](const char* file) {
+    return ropewalk::read_log((dir / "r" / file).string()).back()["torque_upper_nN_nm"];
+  };
+  EXPECT_NEAR(last("errors-numerics.csv"), torque.at("numerics").get<double>(), 1e-12);
+  EXPECT_NEAR(last("errors-statistics.csv"), torque.at("statistics").get<double>(), 1e-12);
+  EXPECT_NE(slurp(dir / "r/report.html").find("The whole error of each result"), std::string::npos);
+  ASSERT_EQ(run("compare r --y torque_upper_nN_nm --csv curves.csv").code, 0);
+  const std::string curves = slurp(dir / "curves.csv");
+  const std::string end = curves.substr(curves.rfind("\"r\""));
+  std::smatch cells;
+  ASSERT_TRUE(std::regex_search(end, cells, std::regex("\"r\",1,[^,]+,([^,]+),([^,]+),"))) << end;
+  EXPECT_NEAR(std::stod(cells[2]), torque.at("error").get<double>(), 0.01 * torque.at("error").get<double>());
+  EXPECT_EQ(run("run rope.toml --out r --force --quiet").code, 0) << "all that errors has left is of the run";
 }
 
 TEST_F(Cli, ResumeKeepsTheNameAndRefusesAnEndBehindIt) {

@@ -246,6 +246,24 @@ TEST_F(Faults, MemoryRunsOut) {
   }
 }
 
+// As FAT, CIFS and some file systems of FUSE.
+TEST_F(Faults, FileSystemsWithoutFlushesOrPermissions) {
+  ASSERT_EQ(run("run s.toml --out whole --quiet").code, 0);
+  for (const auto& [call, code, words] : {std::tuple{"fdatasync", "EINVAL", "does not flush files to the disk"},
+                                          std::tuple{"fchmod", "EPERM", "keeps no permissions"}}) {
+    fs::remove_all(dir / "d");
+    const Outcome o = run("run s.toml --out d --quiet",
+                          fmt::format("env LD_PRELOAD='{}' OMP_NUM_THREADS=1 ROPEWALK_FAULTS_BELOW='{}' "
+                                      "ROPEWALK_FAULT={}:1:on ROPEWALK_FAULTS_CALL={}",
+                                      ROPEWALK_FAULTS, (dir / "d").string(), code, call));
+    EXPECT_EQ(o.code, 0) << call << o.err;
+    const std::size_t at = o.err.find(words);
+    EXPECT_NE(at, std::string::npos) << call << o.err;
+    EXPECT_EQ(o.err.find(words, at + 1), std::string::npos) << "once: " << o.err;
+    expect_same("whole", "d", call);
+  }
+}
+
 TEST_F(Faults, ReadOnlyFileSystem) {
   references(true);
   for (const char* command : {run_it, go_on}) {

@@ -120,9 +120,105 @@ TEST_F(Foreign, OutputThatCannotBeWrittenIsAnError) {
 TEST_F(Foreign, WhatHasNoEndIsNotReadToIt) {
   const Outcome o = run("check /dev/zero", "timeout 100");
   EXPECT_EQ(o.code, 2);
-  EXPECT_THAT(o.err, HasSubstr("/dev/zero: is no file, and has not ended after 256 MiB; name a file"));
+  EXPECT_THAT(o.err, HasSubstr("/dev/zero: is not a regular file; name a file"));
   scene("a.toml", "\"a\"");
   EXPECT_EQ(shell("cat a.toml | ropewalk check /dev/stdin > out.txt 2>&1").code, 0) << slurp(dir / "out.txt");
+}
+
+// A reader would wait for ever for somebody to write.
+TEST_F(Foreign, APipeIsNoFile) {
+  ASSERT_EQ(shell("mkfifo pipe pipe.toml pipe.csv").code, 0);
+  const auto with = [&](const char* file, const std::string& tables) {
+    spit(dir / file, "format = \"ropewalk-scene-1\"\n" + tables + "[run]\nduration_ps = 0.1\n");
+  };
+  with("state.toml", "parameters = \"cnt-10-10-tersoff\"\n[state]\nfile = \"pipe\"\n");
+  with("set.toml", "parameters = \"pipe.toml\"\n[rope]\ntubes = 7\nlength_nm = 6\n");
+  with(
+      "friction.toml",
+      "parameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 6\n[[friction]]\nfrom = \"pipe.toml\"\n");
+  spit(dir / "of-pipe.toml", "format = \"ropewalk-sweep-1\"\nscene = \"pipe.toml\"\n[vary]\nrope.tubes = [1]\n");
+  for (const char* arguments :
+       {"check pipe", "run pipe --out d", "plan pipe", "bench pipe", "sweep pipe --dry-run",
+        "threshold pipe --out t", "sweep of-pipe.toml --dry-run", "check state.toml", "check set.toml",
+        "check friction.toml", "energy pipe --parameters cnt-10-10-tersoff",
+        "energy pipe.csv --parameters pipe.toml", "export pipe --lammps e", "calibrate show pipe.toml",
+        "compare pipe.toml cnt-10-10-tersoff", "rest pipe", "modes pipe"}) {
+    const Outcome o = run(arguments, "timeout 60");
+    EXPECT_EQ(o.code, 2) << arguments << ": " << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  }
+}
+
+// The parser and all that walks through its tables call themselves for each level.
+TEST_F(Foreign, DeepAndLongTextsAreRefused) {
+  const auto parts = [](int count) {
+    std::string key = "a";
+    for (int k = 1; k < count; ++k) key += ".a";
+    return key;
+  };
+  const auto nested = [](int count, const char* open, const char* close) {
+    std::string text;
+    for (int k = 0; k < count; ++k) text += open;
+    for (int k = 0; k < count; ++k) text += close;
+    return text;
+  };
+  const struct {
+    std::string text;
+    const char* words;
+  } wrong[] = {{"[" + parts(50000) + "]", "has a key of more than 32 parts"},
+               {parts(50000) + " = 1", "has a key of more than 32 parts"},
+               {"[[" + parts(33) + "]]", "has a key of more than 32 parts"},
+               {"\"a\".'b'." + parts(40) + " = 1", "has a key of more than 32 parts"},
+               {"x = " + nested(50000, "[", "]"), "has more than 32 brackets in one another"},
+               {"x = " + nested(40, "{a = ", "}"), "has more than 32 brackets in one another"},
+               {"x = " + nested(200, ("{" + parts(31) + " = [").c_str(), "]}"), "has more than 32 brackets"}};
+  for (const auto& w : wrong) {
+    spit(dir / "scene.toml", "format = \"ropewalk-scene-1\"\n" + w.text + "\n");
+    spit(dir / "sweep.toml", "format = \"ropewalk-sweep-1\"\n" + w.text + "\n");
+    spit(dir / "set.toml", "# a set\n" + w.text + "\n");
+    for (const char* arguments :
+         {"check scene.toml", "sweep sweep.toml --dry-run", "calibrate show set.toml", "plan scene.toml"}) {
+      const Outcome o = run(arguments, "timeout 60");
+      EXPECT_EQ(o.code, 2) << arguments << ": " << o.err.substr(0, 300);
+      EXPECT_THAT(o.err, HasSubstr(fmt::format(":2: {}", w.words))) << arguments;
+      EXPECT_LT(o.err.size(), 300u);
+    }
+  }
+  // Dots of numbers, texts and comments are no parts of keys.
+  std::string numbers = "1.5";
+  for (int k = 0; k < 100; ++k) numbers += ", 1.5";
+  spit(dir / "ok.toml", "format = \"ropewalk-scene-1\"\nname = \"" + parts(50) + "\" # " + parts(50) +
+                            "\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 6\n[run]\nx = [" +
+                            numbers + "]\nduration_ps = 0.5\n");
+  EXPECT_THAT(run("check ok.toml").err, HasSubstr("ok.toml:8: run.x: unknown key"));
+}
+
+TEST_F(Foreign, ThreadsOfTheEnvironmentHaveABound) {
+  scene("a.toml", "\"a\"");
+  for (const char* program : {"check a.toml", "run a.toml --out d --quiet", "calibrate show cnt-10-10-tersoff"}) {
+    const Outcome o = run(program, "OMP_NUM_THREADS=100000");
+    EXPECT_EQ(o.code, 2) << program << o.err;
+    EXPECT_THAT(o.err, HasSubstr("OMP_NUM_THREADS: asks for 100000 threads; set it to 1 to 1024")) << program;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  }
+}
+
+// What `run` carries through by shorter steps, the verbs that try some steps carry through too.
+TEST_F(Foreign, WhatRunsIsNotRefused) {
+  for (const int drag : {0, 350, 3500}) {
+    spit(dir / "b.toml",
+         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\n"
+                     "length_nm = 7\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\n[[friction]]\n"
+                     "strength_pN_per_nm = 10\ndrag_eV_ps_per_nm3 = {}\n[run]\nduration_ps = 0.2\n",
+                     drag));
+    spit(dir / "w.toml", "format = \"ropewalk-sweep-1\"\nscene = \"b.toml\"\n[vary]\nrope.tubes = [7]\n");
+    for (const char* arguments : {"run b.toml --out r --quiet --force", "check b.toml", "bench b.toml --steps 20",
+                                  "sweep w.toml --dry-run"}) {
+      const Outcome o = run(arguments);
+      EXPECT_EQ(o.code, 0) << drag << ": " << arguments << ": " << o.err;
+      EXPECT_EQ(o.out.find("nan"), std::string::npos) << o.out;
+    }
+  }
 }
 
 TEST_F(Foreign, TooManyOpenFilesAreSaidToBeSo) {

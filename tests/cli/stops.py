@@ -168,11 +168,19 @@ class Bench:
         if done.returncode not in (0, 7):
             raise SystemExit(f"{name}: {done.returncode} {done.stderr}")
         facts = {"seconds": time.time() - began, "hashes": self.hashes("whole"), "back": done.stderr.count("back to")}
-        rows = [line.split(",") for line in (self.stages("whole")[-1] / "log.csv").read_text().splitlines()]
-        last = dict(zip(rows[0], rows[-1]))
-        facts["steps"], facts["time"] = int(float(last["step"])), float(last["time_ps"])
+        last = {stage.name[5:]: self.last_row(stage) for stage in self.stages("whole")}
+        end = list(last.values())[-1]
+        facts["steps"], facts["time"] = int(end["step"]), end["time_ps"]
+        # Of each stage, had it gone on to the end: more are no steps of its scene.
+        facts["most"] = {name: int(row["step"] + (end["time_ps"] - row["time_ps"]) / (1e-3 * row["time_step_fs"]))
+                         if row["time_step_fs"] > 0 else int(row["step"]) for name, row in last.items()}
         self.clear("whole")
         self.whole[name] = facts
+
+    @staticmethod
+    def last_row(stage):
+        names, *rows = [line.split(",") for line in (stage / "log.csv").read_text().splitlines()]
+        return {n: float(x) for n, x in zip(names, rows[-1]) if n in ("step", "time_ps", "time_step_fs")}
 
     # The command that goes on with the last stage that can; None: there is none.
     def resume(self, options):
@@ -200,9 +208,16 @@ class Bench:
             option = "--until" if means == "until" and not is_relaxation(text) else "--steps"
             if option == "--until":
                 ends = [end * facts["time"] / facts["steps"] for end in ends]
+
+            def within(stage, end):
+                return min(end, facts["most"][stage]) if option == "--steps" else end
+
+            ends[0] = within("", ends[0])
             self.run(*start, option, ends[0])
-            for end in ends[1:]:
-                self.run(*self.resume(options), option, end)
+            for k in range(1, len(ends)):
+                command = self.resume(options)
+                ends[k] = within(command[1][len("part"):], ends[k])
+                self.run(*command, option, ends[k])
             return f"{option} {ends}", expected
         if means in ("TERM", "KILL", "KILL twice"):
             delays = [pick.uniform(0.02, 1 / (1 + k)) * facts["seconds"] for k in range(1 + means.endswith("twice"))]
@@ -288,4 +303,5 @@ def main():
     raise SystemExit(wrong > 0)
 
 
-main()
+if __name__ == "__main__":
+    main()

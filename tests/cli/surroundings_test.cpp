@@ -113,6 +113,32 @@ TEST_F(Surroundings, AHostileRunDirectoryReachesNothingOutside) {
     }
 }
 
+// Each verb on the directory of a run that is at work: it reads what is there, or says who is at work, and the run
+// ends with the bytes of one that was left alone.
+TEST_F(Surroundings, EachVerbBesideALivingRun) {
+  std::string lasting = scene("duration_ps = 1000\nlog_every_ps = 2\n");
+  lasting.replace(lasting.find("frames_every_ps = 0.1"), 21, "frames_every_ps = 50");
+  spit(dir / "s.toml", lasting);
+  const Outcome begun = script(
+      "ropewalk run s.toml --out whole --quiet\n"
+      "setsid ropewalk run s.toml --out h --quiet < /dev/null > run.out 2>&1 & echo $! > pid\n"
+      "until [ \"$(cat h/log.csv 2> /dev/null | wc -l)\" -gt 20 ]; do kill -0 $(cat pid) || exit 9; done\n"
+      "kill -STOP $(cat pid)\n");
+  ASSERT_EQ(begun.code, 0) << begun.err << slurp(dir / "run.out");
+  ASSERT_EQ(slurp(dir / "h/manifest.json").find("finished"), std::string::npos);
+  std::set<std::string> refused;
+  for (const char* verb : verbs_of_a_run) {
+    const Outcome o = soon(verb);
+    EXPECT_THAT(o.code, AnyOf(0, 2)) << verb << ": " << o.err;
+    if (o.code == 2) refused.insert(std::string(verb).substr(0, std::string(verb).find(' ')));
+  }
+  for (const char* verb : {"resume", "run"}) EXPECT_EQ(refused.count(verb), 1u) << verb;
+  ASSERT_EQ(script("kill -CONT $(cat pid); while kill -0 $(cat pid) 2> /dev/null; do sleep 0.02; done").code, 0);
+  EXPECT_THAT(slurp(dir / "h/manifest.json"), HasSubstr("\"finished\"")) << slurp(dir / "run.out");
+  for (const char* file : {"log.csv", "frames.gsd", "final.csv", "limits.json"})
+    EXPECT_TRUE(slurp(dir / "h" / file) == slurp(dir / "whole" / file)) << file;
+}
+
 // What stands under the names that temporary files had, or have, stays as it is, and counts for nothing.
 TEST_F(Surroundings, TemporaryPlacesOfOthersAreNeitherTakenNorHarmed) {
   ASSERT_EQ(run("run s.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
@@ -295,15 +321,15 @@ TEST_F(Surroundings, AValidationRemovesTheWorkOfItsCasesAlone) {
 // A folder of the user's may hold a report.html of another kind.
 TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
   fs::create_directories(dir / "v");
-  for (const auto& [name, verb] : {std::pair{"report.html", "validate run euler-buckling --quiet --out v"},
-                                   std::pair{"report.json", "validate run euler-buckling --quiet --out v"},
-                                   std::pair{"report.html", "parametrize 5,5 --quiet --out v"},
-                                   std::pair{"tubes.csv", "parametrize 5,5 --quiet --out v"},
-                                   std::pair{"cnt-5-5-tersoff.html", "parametrize 5,5 --quiet --out v"},
-                                   std::pair{"chart.html", "validate chart --quick --quiet --out v"},
-                                   std::pair{"chart.html", "validate chart --from " ROPEWALK_SOURCE_DIR
-                                                           "/data/chart/points.csv --out v"},
-                                   std::pair{"points.csv", "validate chart --quick --quiet --out v"}}) {
+  for (const auto& [name, verb] :
+       {std::pair{"report.html", "validate run euler-buckling --quiet --out v"},
+        std::pair{"report.json", "validate run euler-buckling --quiet --out v"},
+        std::pair{"report.html", "parametrize 5,5 --quiet --out v"},
+        std::pair{"tubes.csv", "parametrize 5,5 --quiet --out v"},
+        std::pair{"cnt-5-5-tersoff.html", "parametrize 5,5 --quiet --out v"},
+        std::pair{"chart.html", "validate chart --quick --quiet --out v"},
+        std::pair{"chart.html", "validate chart --from " ROPEWALK_SOURCE_DIR "/data/chart/points.csv --out v"},
+        std::pair{"points.csv", "validate chart --quick --quiet --out v"}}) {
     spit(dir / "v" / name, "mine");
     const Outcome o = soon(verb);
     EXPECT_EQ(o.code, 2) << verb << o.err;
@@ -318,9 +344,10 @@ TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
       std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/friction/friction-5-5-5-5-tersoff.toml"),
                          std::regex("(set_[ab]_)hash +=[^\n]*"), "$1hash = \"0123456789abcdef\"");
   spit(dir / "v/friction-5-5-5-5-tersoff.toml", friction);
-  script("ropewalk parametrize 5,5 --quiet --budget 0.0001 --out v &\n"
-         "for k in $(seq 600); do [ -e v/friction-5-5-5-5-tersoff-error.txt ] && break; sleep 0.1; done\n"
-         "kill $!; wait $!");
+  script(
+      "ropewalk parametrize 5,5 --quiet --budget 0.0001 --out v &\n"
+      "for k in $(seq 600); do [ -e v/friction-5-5-5-5-tersoff-error.txt ] && break; sleep 0.1; done\n"
+      "kill $!; wait $!");
   EXPECT_TRUE(slurp(dir / "v/friction-5-5-5-5-tersoff.toml") == friction);
   EXPECT_THAT(slurp(dir / "v/friction-5-5-5-5-tersoff-error.txt"), HasSubstr("was measured with other sets"));
 }
@@ -328,9 +355,8 @@ TEST_F(Surroundings, ResultsReplaceNoFilesOfTheUser) {
 // A set named "outside/mine" makes a page in the current folder, and none in the folder `outside`.
 TEST_F(Surroundings, TheNameOfASetLeadsNowhere) {
   fs::create_directories(dir / "outside");
-  spit(dir / "set.toml",
-       std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-paper.toml"),
-                          std::regex("\nname = [^\n]*"), "\nname = \"outside/mine\""));
+  spit(dir / "set.toml", std::regex_replace(slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-paper.toml"),
+                                            std::regex("\nname = [^\n]*"), "\nname = \"outside/mine\""));
   const Outcome o = run("calibrate show set.toml");
   EXPECT_EQ(o.code, 0) << o.err;
   EXPECT_TRUE(fs::is_empty(dir / "outside"));

@@ -160,7 +160,9 @@ TEST_F(View, TubesThatBreakAreDrawnInTheirParts) {
   NEEDS_CHROMIUM;
   spit(dir / "s.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 20\n"
-       "[failure]\nstrain = 0.05\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = [[0, 0], "
+       "[failure]\nstrain = 0.05\n[limits]\nstrain = 0.02\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz "
+       "= { "
+       "strain = [[0, 0], "
        "[20, "
        "0.1]] }\n[run]\nduration_ps = 20\nlog_every_ps = 5\nframes_every_ps = 5\n");
   const Outcome o = run("run s.toml --out d --quiet");
@@ -173,6 +175,13 @@ TEST_F(View, TubesThatBreakAreDrawnInTheirParts) {
   const std::size_t from = page.find(key), to = page.find(']', from);
   EXPECT_EQ(std::count(page.begin() + static_cast<long>(from), page.begin() + static_cast<long>(to), ','),
             7 + breaks);
+  // Places are those of the scene, whatever the parts; a passed limit is one of them.
+  const Browsed there = looked([&] { return browse("d/view.html", "#tube=6&element=13"); }, is_settled);
+  EXPECT_EQ(there.console(), "");
+  EXPECT_EQ(there.text("id=\"gone\""), "tube 6, element 13");
+  EXPECT_TRUE(there.has("data-mark=\"strain\">strain, from ")) << there.text("id=\"marks\"");
+  EXPECT_EQ(looked([&] { return browse("d/view.html", "#tube=7"); }, is_settled).text("id=\"gone\""),
+            "the tubes are 0 to 6");
   for (const char* frame : {"#frame=1", ""}) {
     const Browsed seen = looked([&] { return browse("d/view.html", frame); }, is_settled);
     EXPECT_EQ(seen.console(), "") << "the page finds the extremes and sums of the frame again";

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Does what a page of the documentation says, and holds what comes out to what the page shows.
 
-    step_page.py PAGE.md BUILD [--write] [--keep DIRECTORY] [--pictures-only]
+    step_page.py PAGE.md BUILD [--write] [--keep DIRECTORY] [--pictures-only] [--python PROGRAM]
 
 All ```sh blocks run one after another, in one shell and one empty directory. A ```text block behind one shows lines of
 its output: they come in this order, with others between them. In them `...` stands for anything, and a number for those
 within 2 % of it, or within one of its last digit. A picture of the page must come out of the commands; --write puts it
-beside the page, and --pictures-only runs nothing and looks for a command that names it. A stand-in for SLURM's sbatch runs the tasks of a job array one after another."""
+beside the page, and --pictures-only runs nothing and looks for a command that names it. A stand-in for SLURM's sbatch runs the tasks of a job array one after another. python3 is PROGRAM, and finds the package of the build."""
 import argparse
 import os
 import re
@@ -68,18 +68,23 @@ def shell_script(commands):
     return text
 
 
-def step(page, build, directory):
+def step(page, build, directory, python):
     """Errors, each a text."""
     parts = blocks(page.read_text())
     commands = [content for language, content in parts if language == "sh"]
     if not commands:
         return ["has no commands"]
     with tempfile.TemporaryDirectory() as outputs:
-        programs = [here / "stand-ins", build / "mdem", build / "mdem/lammps"]
+        programs = [here / "stand-ins", build / "bin"]
         environment = {**os.environ, "STEP_OUTPUT": outputs, "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                        "PATH": ":".join([*map(str, programs), os.environ["PATH"]])}
         environment.pop("ROPEWALK_DATA", None)
+        if python:
+            Path(outputs, "bin").mkdir()
+            Path(outputs, "bin/python3").symlink_to(python)
+            environment["PATH"] = f"{outputs}/bin:{environment['PATH']}"
+            environment["PYTHONPATH"] = str(build / "mdem/python")
         done = subprocess.run(["bash", "-c", shell_script(commands)], cwd=directory, env=environment,
                               stdin=subprocess.DEVNULL)
         said = [Path(outputs, str(k)).read_text() if Path(outputs, str(k)).exists() else None
@@ -120,6 +125,7 @@ def main():
     arguments.add_argument("--write", action="store_true")
     arguments.add_argument("--keep", type=Path)
     arguments.add_argument("--pictures-only", action="store_true")
+    arguments.add_argument("--python", type=Path)
     given = arguments.parse_args()
     page = given.page.resolve()
     if given.pictures_only:
@@ -127,7 +133,7 @@ def main():
     directory = given.keep or Path(tempfile.mkdtemp(prefix="ropewalk-page-"))
     directory.mkdir(exist_ok=True)
     try:
-        errors = step(page, given.build.resolve(), directory)
+        errors = step(page, given.build.resolve(), directory, given.python)
         for picture in pictures_of(page):
             made = directory / Path(picture).name
             if not made.is_file():

@@ -1,11 +1,12 @@
 // A library to be loaded before a program (LD_PRELOAD): one of its calls that change files fails, or the program is
-// killed there. Only calls on files in one directory count: open, write, pwrite, fsync, fdatasync, ftruncate,
-// rename, mkdir, unlink.
+// killed there. Only calls on files in one directory count: open, write, pwrite, fsync, fdatasync, fchmod,
+// ftruncate, rename, mkdir, unlink.
 //
 //   ROPEWALK_FAULTS_BELOW  the directory, absolute
 //   ROPEWALK_FAULT         HOW:N[:on]   at the Nth call, from 1; "on": from then on. HOW: kill (before the call),
 //                          torn (in the middle of a write; nothing at other calls), term (SIGTERM, and the call
-//                          goes on), ENOSPC, EIO, EDQUOT, EINTR, EROFS
+//                          goes on), ENOSPC, EIO, EDQUOT, EINTR, EROFS,
+//                          EINVAL, EPERM
 //   ROPEWALK_FAULTS_NO_LOCKS   set: no file system has locks
 //   ROPEWALK_FAULTS_COUNT  file that takes the number of calls at the end
 //   ROPEWALK_FAULTS_MADE   file that is there once a fault was made, in whichever process: each counts from the
@@ -104,6 +105,8 @@ int code_of(std::string_view how) {
   if (how == "EDQUOT") return EDQUOT;
   if (how == "EINTR") return EINTR;
   if (how == "EROFS") return EROFS;
+  if (how == "EINVAL") return EINVAL;
+  if (how == "EPERM") return EPERM;
   return EIO;
 }
 
@@ -234,6 +237,11 @@ int fsync(int fd) {
 int fdatasync(int fd) {
   static const auto call = real<int (*)(int)>("fdatasync");
   return fails("fdatasync", is_below(fd)) ? -1 : call(fd);
+}
+
+int fchmod(int fd, mode_t mode) {
+  static const auto call = real<int (*)(int, mode_t)>("fchmod");
+  return fails("fchmod", is_below(fd)) ? -1 : call(fd, mode);
 }
 
 int ftruncate(int fd, off_t size) {

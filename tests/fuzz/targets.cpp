@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "atomistic/potential.hpp"
 #include "atomistic/stiffness.hpp"
+#include "atoms/potential.hpp"
 #include "campaign/sweep_file.hpp"
 #include "chart/point.hpp"
 #include "io/files.hpp"
@@ -22,6 +22,7 @@
 #include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "io/manifest.hpp"
+#include "io/numeric_errors.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/run_errors.hpp"
 #include "model/error.hpp"
@@ -227,6 +228,18 @@ void manifest(const std::string& bytes) {
   taken_or_refused([&] { manifest_json(read_manifest(file.path())); });
 }
 
+// The two files of errors.
+void run_errors(const std::string& bytes) {
+  const std::string run = directory();
+  std::filesystem::create_directories(run + "/errors");
+  const std::vector<LogRow> log(1);
+  for (const char* name : {"errors.json", "numerics.json"}) {
+    write(run + "/errors/" + name, bytes);
+    taken_or_refused([&] { rows_of_errors(run, log); });
+    std::filesystem::remove(run + "/errors/" + name);
+  }
+}
+
 void limits(const std::string& bytes) {
   const File file(bytes);
   taken_or_refused([&] { limits_json(read_limits(file.path())); });
@@ -307,7 +320,7 @@ void settings(const std::string& bytes) {
 
 void potential(const std::string& bytes) {
   const File file(bytes);
-  taken_or_refused([&] { calibrate::user_potential(file.path()); });
+  taken_or_refused([&] { user_potential(file.path()); });
 }
 
 }  // namespace
@@ -324,6 +337,7 @@ const std::vector<Target>& targets() {
                                           {"manifest", manifest},
                                           {"events", events},
                                           {"limits", limits},
+                                          {"run_errors", run_errors},
                                           {"log", log},
                                           {"lammps_states", lammps_states},
                                           {"lammps_tables", lammps_tables},

@@ -77,9 +77,29 @@ consumer/twist only-here > said || fail "the consumer does not find the data of 
 grep -q "70 elements" said || fail "the consumer's rope is wrong"
 grep -q "s of processor time" said || fail "the consumer cannot time a run"
 [ ! -e from-memory.toml ] || fail "the consumer left a file"
-# A load of one's own, registered by a program outside of this tree, in a scene that names it.
+# A load and a scene kind of one's own, registered by programs outside of this tree, in scenes that name them.
 cmake -S "$here/own_load" -B own_load -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build own_load >/dev/null
+cat > pair.toml <<'SCENE'
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[pair]
+length_nm = 14
+apart_nm = 1.8
+[[load]]
+kind = "wind"
+elements = "all"
+growth_nN_per_nm = 1e-3
+[run]
+duration_ps = 1
+SCENE
+own_load/my-ropewalk run pair.toml --out pair --quiet > said || fail "ropewalk with a kind and a load of one's own: $(cat said)"
+[ -s pair/report.html ] && own_load/my-ropewalk help pair | grep -q 'apart_nm' || fail "the kind of one's own has no help"
+own_load/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/dev/null
+grep -q "$PWD/own_load/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
+sed 's/^apart_nm.*/apart = 1.8/' pair.toml > bad.toml
+own_load/my-ropewalk check bad.toml 2> said && fail "an unknown key of the kind is taken"
+grep -q 'did you mean "apart_nm"' said || fail "the kind's own key is not named: $(cat said)"
 own_load/own_load "$here/own_load/wind.toml" || fail "the tube in the wind does not bend as a beam does"
 sed '/^growth/d' "$here/own_load/wind.toml" > calm.toml
 own_load/own_load calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"

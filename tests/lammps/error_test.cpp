@@ -56,6 +56,10 @@ TEST_F(LammpsErrors, NameTheRemedy) {
       {"words of states", "from ${dir}/${from}", "${from}", "takes a number of steps", "from rope.state"},
       {"motion before elements", "fix states all", "fix motion all mdem/nve\nfix states all",
        "is there before them", "fix states before fix motion"},
+      {"two steps in one", "fix motion all mdem/nve\n", "run_style respa 2 2\nfix motion all mdem/nve\n",
+       "run_style respa", "run_style verlet"},
+      {"minimizer", "variable now equal", "minimize 0 1e-6 10 10\nvariable now equal", "a minimizer of LAMMPS",
+       "fix motion all mdem/relax"},
       {"special bonds", "special_bonds lj/coul 0 0 0", "special_bonds lj/coul 0 0 0.5", "weakens contact",
        "only 0 or 1"},
       {"time step", "timestep 0.0", "timestep 0.00", "the time step is not that", "take it from in.rope"},
@@ -64,7 +68,22 @@ TEST_F(LammpsErrors, NameTheRemedy) {
       {"lost elements", "fix motion all", "group gone id 5\ndelete_atoms group gone bond yes\nfix motion all",
        "69 of 70 elements are left", "restart file"},
   };
-  for (const Mistake& m : mistakes) {
+  // Each fix of ours twice: a second one would act again.
+  std::vector<Mistake> all = mistakes;
+  std::istringstream lines(script);
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("fix ", 0) == 0 && line.find(" mdem/") != std::string::npos) {
+      const std::string id = line.substr(4, line.find(' ', 4) - 4);
+      std::string second = line;
+      second.replace(4, id.size(), "again");
+      // Of a second file, which begins with no state.
+      if (const std::size_t from = second.find(" from "); from != std::string::npos) second.erase(from);
+      all.push_back({"twice", line + "\n", line + "\n" + second + "\n",
+                     id == "motion" ? "more than one fix moves" : "is there twice",
+                     id == "motion" ? "leave only one" : "unfix again"});
+    }
+  ASSERT_EQ(all.size(), mistakes.size() + 4) << script;
+  for (const Mistake& m : all) {
     SCOPED_TRACE(m.name);
     spit(dir / "out/in.rope", script);
     edit("out", m.what, m.by);

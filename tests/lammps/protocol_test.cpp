@@ -59,6 +59,13 @@ const std::vector<Protocol>& protocols() {
        1e-9},
       {"LegacyTorque",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"paper\"\nlegacy_torque = true\n"},
+      // A bath that warms, with clamps whose constrained components it must leave alone.
+      {"Thermostat",
+       "[[grip]]\nend = \"lower\"\nas = \"each\"\n[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\n"
+       "about_z = { torque_nN_nm = 30 }\n[start]\ntemperature_K = 200\n"
+       "[thermostat]\ntemperature_K = [[0, 200], [2, 300]]\ncoupling_per_ps = 2\nseed = 5\n"
+       "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n",
+       1e-9},
       {"NoContact",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
        "[[load]]\nkind = \"fix\"\nelements = [0]\n"}};
@@ -100,7 +107,11 @@ TEST_F(ProtocolTest, HundredStepsAgree) {
       const LammpsRow row = read_lammps_rows(LammpsDirectory{out}).back();
       EXPECT_NEAR(row.work, native.work(), p.tolerance * std::fmax(1, native.work()));
       EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
+      EXPECT_NEAR(row.heat, native.heat(), p.tolerance * std::fmax(1, native.heat()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
+      if (p.name == std::string("Thermostat")) {
+        EXPECT_GT(native.heat(), 1);
+      }
     }
   }
 }
@@ -153,6 +164,27 @@ const char* const hot_twist =
 // Lists are built many times, and elements go from rank to rank.
 TEST_F(LammpsRun, ARopeTwistsAsHereOnEveryNumberOfRanks) {
   expect_equal_steps(line_scene("double", small_rope, hot_twist), 300, 1e-10);
+}
+
+// Tubes that end inside of a rope, in line, under a bath: ends meet within a rank and across ranks.
+TEST_F(LammpsRun, FiniteTubesMeetAsHere) {
+  const std::string scene_text =
+      line_scene("double", "[rope]\ntubes = 7\nlength_nm = 60\ntube_length_nm = 15\nperturbation_nm = 0.01\n",
+                 "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { force_nN = 1 }\n"
+                 "[start]\ntemperature_K = 300\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n"
+                 "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n");
+  expect_equal_steps(scene_text, 200, 1e-9);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.steps(200);
+  const double energy = native.forces().term_energy.at(0);
+  EXPECT_LT(energy, -0.1);
+  for (const int n : {1, 2, 4}) {
+    const std::string out = (dir / ("out-" + std::to_string(n))).string();
+    EXPECT_NEAR(read_lammps_rows(LammpsDirectory{out}, 1).back().terms.at(0), energy, 1e-7 * -energy) << n;
+  }
+  ASSERT_EQ(run("import out-2").code, 0);
+  EXPECT_NEAR(read_log((dir / "out-2/log.csv").string()).back()["ends_eV"], energy, 1e-7 * -energy);
 }
 
 // Tethers within a rank and across ranks, one of which breaks on the way; then a run that goes on remembers it.
@@ -282,6 +314,23 @@ TEST_F(LammpsRun, RelaxesToTheSameMinimum) {
   }
 }
 
+// LAMMPS ends where forces are small; the scene asks for the energy as well.
+TEST_F(LammpsRun, ARelaxationThatIsNotAtRestSaysSoAndGoesOn) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 30\n[contact]\nlaw = "
+      "\"none\"\n[[load]]\nkind = \"fix\"\nelements = [0]\n[[load]]\nkind = \"force\"\nelements = [-1]\nforce_nN = "
+      "[0.01, 0, 0]\n[run]\nmode = \"relax\"\nforce_tolerance_nN = 1e-5\n",
+      "out");
+  ASSERT_EQ(lmp(1, "out").code, 0);
+  const Outcome o = run("import out");
+  EXPECT_EQ(o.code, 4) << o.out << o.err;
+  EXPECT_NE(o.err.find("not at rest after steps 0 to"), std::string::npos) << o.err;
+  EXPECT_EQ(run("resume out --quiet").code, 0);
+  ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
+  const auto bend = [&](const char* of) { return read_log((dir / of / "log.csv").string()).back()["bend_eV"]; };
+  EXPECT_NEAR(bend("out"), bend("whole"), 2e-3 * bend("whole"));
+}
+
 const char* const warm_twist =
     "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\n[start]\ntemperature_K = 100\nmay_cool = true\n";
 
@@ -298,6 +347,7 @@ void expect_same_run(const Left& whole, const Left& left, double tolerance) {
 void expect_same_account(const LammpsRow& whole, const LammpsRow& again) {
   EXPECT_NEAR(again.work, whole.work, 1e-12 * whole.work);
   EXPECT_NEAR(again.dissipated, whole.dissipated, 1e-12 * whole.dissipated);
+  EXPECT_NEAR(again.heat, whole.heat, 1e-12 * std::fabs(whole.heat));
 }
 
 // On the same number of ranks the resumed run has the bits of an uninterrupted one. The skin of the neighbour list
@@ -426,9 +476,10 @@ TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
 // --- there and back -----------------------------------------------------------------------------------
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {
-  const std::string scene =
-      rope("[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\nmay_cool = true\n",
-           "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
+  const std::string scene = rope(
+      "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 20\n[start]\ntemperature_K = 200\nmay_cool = true\n"
+      "[thermostat]\ntemperature_K = 200\ncoupling_per_ps = 0.5\n",
+      "duration_ps = 6\nframes_every_ps = 1\nlog_every_ps = 1\n");
   spit(dir / "scene.toml", scene);
   ASSERT_EQ(run("run scene.toml --out whole --quiet").code, 0);
   // Two ps here, two on LAMMPS, two here again.
@@ -523,7 +574,7 @@ TEST_F(LammpsRun, ImportSaysThatStepsWereTooLong) {
   const Outcome o = run("import there");
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.err.find("note: from step 0 to 1"), std::string::npos) << o.err;
-  EXPECT_NE(o.err.find("the account of energy does not close"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("the energy balance does not close"), std::string::npos) << o.err;
 }
 
 // Of a killed run all whole states are taken.

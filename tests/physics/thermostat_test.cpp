@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/counter_random.hpp"
+#include "observe/time_mean.hpp"
 #include "scene/ends/twist.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
@@ -84,6 +85,32 @@ TEST(Langevin, EveryKindOfMotionHoldsHalfAkT) {
   EXPECT_NEAR(per_term(twist, bonds), 1, 0.02);
   EXPECT_NEAR(per_term(moves, 3 * elements), 1, 0.02);
   EXPECT_NEAR(per_term(turns, 3 * elements), 1, 0.02);
+}
+
+// 300 runs of a chain, each with an error of its own mean by blocks: the true mean, by equipartition, lies within
+// one error in 68.3 % of them, within two binomial standard errors, 5.4 %.
+TEST(LangevinLong, ErrorsOfMeansCoverTheTrueMean) {
+  const Chain chain(5);
+  const double truth = 2 * chain.topology.bonds() * 0.5 * kT;
+  constexpr int runs = 300, values = 2000;
+  int within = 0;
+  double correlation = 0;
+  for (int run = 1; run <= runs; ++run) {
+    Simulation s = chain.make(0.1 * chain.limit(), langevin(room, 8, static_cast<std::uint64_t>(run)));
+    s.steps(3000);
+    std::vector<double> bend;
+    while (bend.size() < values) {
+      s.steps(10);
+      bend.push_back(s.forces().energy.bend);
+    }
+    const TimeMean mean = time_mean(bend);
+    ASSERT_TRUE(std::isfinite(mean.error)) << run;
+    within += std::fabs(mean.mean - truth) < mean.error;
+    correlation += mean.rows / runs;
+  }
+  RecordProperty("within", within);
+  EXPECT_GT(correlation, 1) << "neighbouring values are alike";
+  EXPECT_NEAR(within / static_cast<double>(runs), 0.683, 0.054);
 }
 
 // From 100 to 400 K and back, slowly against the coupling. 6 x 400 kinetic terms: 3 % in a single reading, 1 % in

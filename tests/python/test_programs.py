@@ -105,6 +105,8 @@ class ProgramsTest(FolderTest):
         found = ropewalk.errors(run)
         self.assertTrue(os.path.exists("run/errors.csv"))
         self.assertTrue(found)
+        whole = ropewalk.errors(run, numerics=True)["at_the_end"]["kinetic_eV"]
+        self.assertGreaterEqual(whole["error"], whole["numerics"])
 
     def test_modes(self):
         # A free tube under couples: a straight one is at rest, and its fastest motion is a helix from 8.987 EI/L = 79.2 nN nm on.
@@ -146,15 +148,17 @@ class ProgramsTest(FolderTest):
 
     def test_a_changed_set(self):
         tube = ropewalk.ParameterSet("cnt-10-10-tersoff")
-        other = tube.changed(EA=650, out="mine.toml")
+        other = tube.changed({"bond.EA": 650, "bond.pull": None}, out="mine.toml")
         self.assertEqual((other.name, other["bond.EA"].value, other["bond.EA"].origin), ("mine", 650, "chosen"))
-        changed = ("bond.EA", "bond.pull.end")  # the pull goes on from EA, and is left out
+        changed = ("bond.EA", "bond.pull.end")
         self.assertEqual({k: v for k, v in other.items() if k not in changed},
                          {k: v for k, v in tube.items() if k not in changed})
         scene = ropewalk.Scene({**ROPE, "parameters": "mine.toml"})
         self.assertEqual(ropewalk.run(scene, "run").status, "finished")
         for changes, words in (({"EB": 1, "out": "b.toml"}, "no number"), ({"EA": 1, "out": "mine.toml"}, "exists"),
-                               ({"EA": -1, "out": "b.toml"}, "bond.EA"), ({"EA": 1}, "name the file")):
+                               ({"EA": -1, "out": "b.toml"}, "bond.EA"), ({"EA": 1}, "name the file"),
+                               ({"EA": 650, "out": "b.toml"}, "bond.pull.force"),
+                               ({"changes": {"bond.push": None}, "out": "b.toml"}, "no number")):
             with self.assertRaisesRegex(ropewalk.InputError, words):
                 tube.changed(**changes)
         self.assertFalse(os.path.exists("b.toml"))

@@ -182,6 +182,23 @@ class RunningTest(FolderTest):
         with self.assertRaisesRegex(ropewalk.InputError, "no device is named"):
             ropewalk.run(ROPE, "none", device="abacus", steps=2)
 
+    def test_threads_of_a_process_have_instructions_of_their_own(self):
+        scene = {**ROPE, "rope": {"tubes": 19, "length_nm": 20}, "run": {"duration_ps": 0.3, "log_every_ps": 0.1}}
+        sets = ("baseline", "AVX2", "baseline")
+        for k, name in enumerate(sets):
+            ropewalk.run(scene, f"alone{k}", instructions=name)
+        threads = [threading.Thread(target=ropewalk.run, args=(scene, f"beside{k}"), kwargs={"instructions": name})
+                   for k, name in enumerate(sets)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for k, name in enumerate(sets):
+            self.assertEqual(ropewalk.open(f"beside{k}").manifest["instructions"], name)
+            alone, beside = (pathlib.Path(f"{where}{k}/final.csv").read_text() for where in ("alone", "beside"))
+            self.assertEqual(alone, beside, name)
+        self.assertNotEqual(*(pathlib.Path(f"beside{k}/final.csv").read_text() for k in (0, 1)))
+
     def test_threads_and_instructions_are_as_before(self):
         before = ropewalk.threads(), ropewalk._core.instructions()
         ropewalk.run(ROPE, "run", threads=before[0] + 1, steps=2)

@@ -107,6 +107,7 @@ class RunTest(FolderTest):
         np.testing.assert_allclose(universe.atoms.masses, 12.011 * atoms, rtol=1e-3)
         np.testing.assert_allclose(universe.atoms.radii, 10 * tube["tube.radius"].value, rtol=1e-6)
         self.assertEqual(universe.trajectory[2].time, run.frames[2].time_ps)
+        self.assertEqual(len(universe.select_atoms("resid 3 and segid cnt-10-10-tersoff")), run.frames[0].position.shape[1])
         with self.assertRaisesRegex(ropewalk.InputError, "frames.gsd"):
             self.run_.to_mdanalysis()
 
@@ -132,6 +133,14 @@ class RunTest(FolderTest):
             for scene, (again, position) in zip(scenes, pool.map(end_of, scenes)):
                 self.assertEqual(again, scene)
                 np.testing.assert_array_equal(position, end_of(scene)[1])
+
+    def test_mean_of_a_column(self):
+        log = self.run_.log
+        mean = log.mean("time_ps")
+        self.assertAlmostEqual(mean.value, log["time_ps"].mean())
+        self.assertTrue(np.isnan(mean.error), "time drifts")
+        last = log["time_ps"][-1] - log["time_ps"][-2]
+        self.assertAlmostEqual(log.mean("time_ps", last_ps=last).value, log["time_ps"][-2:].mean())
 
     def test_log_as_npz(self):
         self.run_.log.to_npz("log.npz")

@@ -191,13 +191,57 @@ class ObserverTest(FolderTest):
             simulation.step(10)
         self.assertEqual(simulation.step_number, 3)
 
-    def test_they_cannot_step(self):
+    def test_they_cannot_move_the_simulation(self):
+        """Each call that moves the state, from each kind of function that a simulation calls."""
+        scene = ropewalk.Scene(ROPE)
+        begin = ropewalk.Simulation(scene).checkpoint()
+        moves = {"step": lambda s: s.step(), "step_until": lambda s: s.step_until(1), "relax": lambda s: s.relax(),
+                 "restore": lambda s: s.restore(begin)}
+        for name, move in moves.items():
+            for kind in ("hook", "observer", "force"):
+                with self.subTest(f"{name} in a {kind}"):
+                    called = []
+
+                    def force(now, move=move, called=called):
+                        if now.step == 2:
+                            called.append(1)
+                            move(simulation)
+
+                    simulation = ropewalk.Simulation(scene, forces=[force] if kind == "force" else [])
+                    if kind == "hook":
+                        simulation.add_hook(lambda s, move=move: s.step_number == 2 and move(s))
+                    if kind == "observer":
+                        simulation.add_observer(lambda s, move=move: s.step_number == 2 and move(s), 1)
+                    with self.assertRaisesRegex(ropewalk.Error, f"cannot {name.split('_')[0]} the simulation that calls it"):
+                        simulation.step(4)
+                    self.assertLessEqual(simulation.step_number, 2)
+                    simulation.step(0)
+
+    def test_what_is_read_changes_nothing(self):
+        """Each call that reads, from an observer."""
+        read = {"repr": repr, "state": lambda s: s.state.position.sum(), "force": lambda s: s.force.sum(),
+                "energies": lambda s: s.energies, "measure": lambda s: s.measure("kinetic_eV"),
+                "checkpoint": lambda s: s.checkpoint(), "write_state": lambda s: s.write_state("now.csv"),
+                "save": lambda s: s.save("now.bin"), "largest_force": lambda s: s.largest_force_eV_per_nm}
+        plain = ropewalk.Simulation(ROPE)
+        plain.step(6)
+        for name, look in read.items():
+            with self.subTest(name):
+                simulation = ropewalk.Simulation(ROPE)
+                simulation.add_observer(look, 2)
+                simulation.step(6)
+                np.testing.assert_array_equal(plain.state.position, simulation.state.position)
+
+    def test_numbers_are_real_and_finite(self):
         simulation = ropewalk.Simulation(ROPE)
-        simulation.add_observer(lambda s: s.step(), 1)
-        with self.assertRaisesRegex(ropewalk.Error, "cannot step"):
-            simulation.step()
-        with self.assertRaises(ValueError):
-            simulation.add_observer(print, 0)
+        calls = (simulation.step, simulation.step_until, simulation.relax, lambda x: simulation.relax(energy=x),
+                 lambda x: simulation.relax(max_steps=x), lambda x: simulation.add_observer(print, x),
+                 lambda x: simulation.add_hook(print, x), lambda x: setattr(simulation, "divided", x))
+        for call in calls:
+            for wrong in (float("nan"), float("inf"), -1, 1j, "1", None if call is simulation.step else float("-inf")):
+                with self.assertRaises((ValueError, TypeError)):
+                    call(wrong)
+        self.assertEqual(simulation.step_number, 0)
 
 
 class MeasureTest(FolderTest):
@@ -242,6 +286,37 @@ class MeasureTest(FolderTest):
         with self.assertRaises(TypeError):
             ropewalk.energy(simulation.state)
 
+    def test_energy_has_what_friction_links_and_broken_tubes_remember(self):
+        simulation = ropewalk.Simulation({
+            "parameters": "cnt-10-10-tersoff", "rope": {"tubes": 7, "length_nm": 14},
+            "links": [{"per_nm": 0.3, "stiffness_nN_per_nm": 100, "breaks_at_nN": 5}],
+            "failure": {"strain": 0.02}, "friction": [{"from": "atoms"}], "contact": {"precision": "double"},
+            "grip": [{"end": "lower"}, {"end": "upper", "z": {"strain": [[0, 0], [3, 0.05]]}}],
+            "run": {"duration_ps": 4},
+        })
+        simulation.step_until(4)
+        self.assertGreater(simulation.measure("bonds_broken"), 0)
+        self.assertGreater(abs(simulation.energies.terms), 1e-3)
+        for reference in (False, True):
+            found = ropewalk.energy(simulation, reference=reference)
+            for name in ("stretch", "bend", "vdw", "terms"):
+                self.assertAlmostEqual(getattr(found, name), getattr(simulation.energies, name), delta=1e-6)
+
+    def test_energy_of_a_collapsed_tube_needs_its_free_length(self):
+        simulation = ropewalk.Simulation({
+            "parameters": "cnt-10-10-tersoff", "rope": {"tubes": 1, "length_nm": 14},
+            "grip": [{"end": "lower"}, {"end": "upper", "about_z": {"rotation_deg": [[0, 0], [4, 55]]}}],
+            "run": {"duration_ps": 8},
+        })
+        simulation.step_until(8)
+        simulation.write_state("state.csv")
+        with self.assertLogs("ropewalk", "WARNING") as said:
+            short = ropewalk.energy("state.csv", "cnt-10-10-tersoff")
+        self.assertIn("beyond the collapse", said.output[0])
+        self.assertGreater(abs(short.twist - simulation.energies.twist), 1e-3)
+        whole = ropewalk.energy("state.csv", "cnt-10-10-tersoff", free_length_nm=9 * 1.3775870846515064)
+        self.assertAlmostEqual(whole.twist, simulation.energies.twist, delta=1e-6)
+
     def test_energy_is_a_number_or_an_error(self):
         start = ropewalk.Scene(ROPE).start
 
@@ -265,11 +340,16 @@ class MeasureTest(FolderTest):
         position[0, 2] = position[0, 1]
         with self.assertRaisesRegex(ropewalk.InputError, "state: .*finite number; two elements lie in one place"):
             of(position, start.orientation)
+        with self.assertRaisesRegex(ropewalk.InputError, "parameters: names no parameter set"):
+            ropewalk.energy(start, [])
+        for begin in ([], [70], [0, 80, 70], [0, 35, 35, 70], [1, 70], [0, -5, 70]):
+            with self.assertRaisesRegex(ValueError, "tubes"):
+                ropewalk.energy(ropewalk.State(start.flat, begin, start.element_length_nm), "cnt-10-10-tersoff")
 
     def test_numbers_of_steps_have_an_end(self):
         simulation = ropewalk.Simulation(ROPE)
         for call in (simulation.step, lambda n: simulation.relax(max_steps=n)):
-            with self.assertRaisesRegex(ValueError, "is no number of steps: give 0 to"):
+            with self.assertRaisesRegex(ValueError, ": give 0 to"):
                 call(10**30)
 
     def test_forces_are_the_slope_of_the_energy(self):
@@ -300,6 +380,14 @@ class CheckpointTest(FolderTest):
         np.testing.assert_array_equal(first.state.position, second.state.position)
         self.assertEqual(first.energies, second.energies)
         self.assertEqual(first.measure("balance_eV"), second.measure("balance_eV"))
+
+    def test_what_is_no_file_is_not_waited_for(self):
+        os.mkfifo("pipe")
+        simulation = ropewalk.Simulation(ROPE)
+        with self.assertRaisesRegex(ropewalk.InputError, "pipe: is not a regular file"):
+            simulation.restore("pipe")
+        with self.assertRaises(TypeError):  # a number would be an open file
+            simulation.restore(0)
 
     def test_damaged_and_foreign_checkpoints_are_refused(self):
         simulation = ropewalk.Simulation(ROPE)
@@ -376,6 +464,7 @@ class InterruptTest(FolderTest):
         refused = 0
         while thread.is_alive():
             try:
+                self.assertIn("Simulation of", repr(simulation))
                 simulation.time_ps
             except RuntimeError as e:
                 self.assertIn("another thread", str(e))

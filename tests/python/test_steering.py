@@ -153,9 +153,13 @@ class OwnForceTest(FolderTest):
     def test_what_is_wrong_is_said(self):
         for wrong, words in ((lambda now: np.zeros((3, 3)), r"\(70, 3\) is needed"),
                              (lambda now: np.full((70, 3), np.nan), "not finite"),
+                             (lambda now: np.zeros((70, 3), complex), "complex128: real numbers are needed"),
+                             (lambda now: np.ma.masked_array(np.zeros((70, 3)), True), "masked array"),
+                             (lambda now: np.full((70, 3), "1"), "real numbers are needed"),
                              (lambda now: (None, None, math.inf), "energy"),
+                             (lambda now: (None, None, 1j), "energy"),
                              (lambda now: (None, None, None if now.step else 1.0), "an energy at some times")):
-            with self.assertRaisesRegex(ValueError, words):
+            with self.assertRaisesRegex((ValueError, TypeError), words):
                 ropewalk.Simulation(FREE, forces=[wrong]).step()
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The job arrays of `ropewalk sweep --slurm` and `threshold --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
+# The jobs of `ropewalk run --slurm`, `sweep --slurm` and `threshold --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
 # not on the PATH. Argument: ropewalk.
 set -euo pipefail
 command -v slurmctld slurmd sbatch >/dev/null || { echo "slurm: skipped, apt-get install slurm-wlm" >&2; exit 77; }
@@ -71,6 +71,17 @@ patiently is_done || fail "the array does not end"
 "$ropewalk" gather study --columns time_ps > table.csv || fail "the campaign is none"
 [ "$(grep -c ',finished,' table.csv)" = 2 ] || fail "not all points are done: $(cat table.csv)"
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
+
+# One run in pieces: each job submits the next one.
+sed 's/^tubes = 1/tubes = 37/; s/^length_nm = 14/length_nm = 40/; s/^duration_ps = .*/duration_ps = 2.5/' scenes/rope.toml > scenes/long.toml
+"$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm long.sh >/dev/null
+(cd elsewhere && sbatch ../long.sh >/dev/null) || fail "the job of a run is refused"
+patiently is_done || fail "the jobs of a run do not end: $(cat long.messages.txt)"
+grep -q '"status": "finished"' long/manifest.json || fail "the run is not done: $(cat long.messages.txt)"
+grep -q 'Submitted batch job' long.messages.txt || fail "one job was enough: $(cat long.messages.txt)"
+[ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
+"$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm again.sh 2> said && fail "a job would resume another run"
+grep -q 'is there already' said || fail "an earlier run is not named: $(cat said)"
 
 # A search for thresholds, one point a task; the same command then makes the page of all.
 { printf 'format = "ropewalk-sweep-1"\nscene = "rope.toml"\n[threshold]\nkey = "twist.moment_nN_nm"\nfrom = 1\nto = 9\n'

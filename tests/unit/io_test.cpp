@@ -790,7 +790,7 @@ RopeView twisted_rope(int shells, int elements, double twist, double amplitude, 
                      s = std::sin(6 * twist * u);
         tube.emplace_back(c * x - s * y + amplitude * std::sin(9 * u), s * x + c * y, 1.356 * e);
       }
-      if (moments) view.bending_moment_eV.emplace_back(tube.size(), 10.0 + i);
+      if (moments) view.colour.emplace_back(tube.size(), 10.0 + i);
       view.tubes.push_back(std::move(tube));
     }
   return view;
@@ -812,8 +812,8 @@ TEST(RopePicture, IsSmallAndWellFormed) {
 
 TEST(RopePicture, ColoursByMomentOnlyWhereThereAreMoments) {
   const RopeView with = twisted_rope(2, 50, 1, 0, true), without = twisted_rope(2, 50, 1, 0, false);
-  EXPECT_GT(rope_camera({with}, 0.678).moment_eV, 0);
-  EXPECT_EQ(rope_camera({without}, 0.678).moment_eV, 0);
+  EXPECT_TRUE(rope_camera({with}, 0.678).coloured());
+  EXPECT_FALSE(rope_camera({without}, 0.678).coloured());
   EXPECT_THAT(rope_svg(with, 0.678), HasSubstr("bending moment (nN nm)"));
   EXPECT_THAT(rope_svg(without, 0.678), Not(HasSubstr("bending moment")));
 }
@@ -821,8 +821,8 @@ TEST(RopePicture, ColoursByMomentOnlyWhereThereAreMoments) {
 TEST(RopePicture, SurvivesWhatIsNotThere) {
   RopeView broken = twisted_rope(1, 20, 1, 0, true);
   broken.tubes[2][5] = Vector3(nan_value, 0, 0);
-  broken.bending_moment_eV[3][7] = nan_value;
-  broken.bending_moment_eV[4].clear();
+  broken.colour[3][7] = nan_value;
+  broken.colour[4].clear();
   for (const RopeView& view : {RopeView(), broken}) {
     EXPECT_EQ(unbalanced(rope_svg(view, 0.678)), "");
     EXPECT_THAT(attributes(rope_svg(view, 0.678)), Not(testing::ContainsRegex("nan|inf")));

@@ -12,7 +12,7 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "observe/observe.hpp"
-#include "plan/check.hpp"
+#include "plan/spot_check.hpp"
 #include "plan/features.hpp"
 #include "plan/outcome.hpp"
 #include "plan/planner.hpp"

@@ -1,5 +1,6 @@
 // Scenes and parameter sets: keys, the words of refusals, and the model built from them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -515,8 +516,8 @@ TEST(SceneKeys, StatedDefaultsAreTheDefaults) {
     std::string text;
     for (const char* table : {"rope", "twist", "start", "thermostat", "contact", "damping", "observe"})
       text += fmt::format("[{}]\n{}", table, keys_of(table, defaults));
-    return choices(
-        scene_from(text + "[run]\n" + keys_of("run", defaults, "solver force_tolerance_nN energy_tolerance max_steps")));
+    return choices(scene_from(text + "[run]\n" +
+                              keys_of("run", defaults, "solver force_tolerance_nN energy_tolerance max_steps")));
   };
   EXPECT_EQ(dynamics(true), dynamics(false));
   const auto relax = [](bool defaults) {
@@ -912,6 +913,58 @@ TEST(StateFile, KeepsVelocitiesAndSpins) {
   EXPECT_THAT(message("tube,x_nm\n0,0\n"), HasSubstr("wz_rad_per_ps"));
 }
 
+// A state with a line or a unit amiss would be 10^3 to 10^7 eV of stretch, or a tube that is too short, without a
+// word.
+TEST(StateFile, EveryLineAndEveryNumberIsAsItWasWritten) {
+  Topology t = test::published_topology();
+  const State s = test::disordered_bundle(t, 3, 4, 1.7, 0.1, 9);
+  const std::string text = state_csv(t, s);
+  std::vector<std::string> lines;
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) lines.push_back(line);
+  const std::size_t first = lines.size() - 12;
+  const auto message = [](const std::vector<std::string>& changed) -> std::string {
+    std::string csv;
+    for (const std::string& line : changed) csv += line + "\n";
+    try {
+      built_state(csv);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  ASSERT_EQ(message(lines), "");
+  for (std::size_t k = first; k < lines.size(); ++k) {
+    std::vector<std::string> without = lines;
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(k));
+    EXPECT_NE(message(without), "") << "without line " << k + 1;
+  }
+  // Each column, all of its numbers, as another unit would have them.
+  for (std::size_t column = 1; column < 14; ++column)
+    for (const double factor : {10.0, 0.1, -1.0, 1000.0}) {
+      std::vector<std::string> scaled = lines;
+      for (std::size_t k = first; k < lines.size(); ++k) {
+        std::vector<std::string> cells;
+        std::istringstream line(lines[k]);
+        for (std::string cell; std::getline(line, cell, ',');) cells.push_back(cell);
+        cells[column] = fmt::format("{}", factor * std::stod(cells[column]));
+        scaled[k] = fmt::format("{}", fmt::join(cells, ","));
+      }
+      EXPECT_NE(message(scaled), "") << "column " << column << " times " << factor;
+    }
+  // A file of 0.2.0 has no sum, and one by hand no length either.
+  std::vector<std::string> old = lines;
+  old.erase(std::find_if(old.begin(), old.end(), [](const auto& line) { return line.find("_sum") != line.npos; }));
+  ASSERT_EQ(message(old), "");
+  old.erase(old.begin() + static_cast<std::ptrdiff_t>(first) + 1);
+  EXPECT_THAT(message(old), HasSubstr(fmt::format("elements.csv:{}: lies ", first + 2)));
+  EXPECT_THAT(message(old), HasSubstr("is a line missing, or are lengths not in nm?"));
+  // Numbers that another program has written in its own way are the same ones.
+  std::vector<std::string> same = lines;
+  for (std::size_t k = first; k < lines.size(); ++k) same[k] = "0" + lines[k];
+  EXPECT_EQ(message(same), "");
+}
+
 // Clamps and moments need to know which end is up: of a tube that runs down, and of tubes that run against one
 // another.
 TEST(StateFile, TubesUpsideDownAreNotHeldByTheirEnds) {
@@ -953,7 +1006,7 @@ TEST(StateFile, OfSeveralSetsIsNotReadWithOne) {
   State s(4);
   for (int i = 0; i < 4; ++i)
     s.position.set(static_cast<std::size_t>(i), Vector3(3.0 * (i / 2), 0, t.types[0].element_length * (i % 2)));
-  EXPECT_THAT(state_csv(t, s), HasSubstr("\n# tube_types: 0,0\n0,"));
+  EXPECT_THAT(state_csv(t, s), HasSubstr("\n# tube_types: 0,0\n# elements_and_sum: 4, "));
   EXPECT_NO_THROW(built_state(state_csv(t, s)));
   t.tube_type = {0, 1};
   const auto message = [&](const std::string& csv) -> std::string {
@@ -986,7 +1039,7 @@ TEST(StateFile, StatesTheLengthOfItsElements) {
   State s(5);
   for (int i = 0; i < 5; ++i) s.position.set(static_cast<std::size_t>(i), Vector3(0, 0, 0.678 * i));
   const std::string stated = state_csv(t, s);
-  EXPECT_THAT(stated, HasSubstr("wz_rad_per_ps\n# element_length_nm: 0.678\n0,"));
+  EXPECT_THAT(stated, HasSubstr("wz_rad_per_ps\n# element_length_nm: 0.678\n# elements_and_sum: 5, "));
   const auto message = [](const std::string& csv, const std::string& more) -> std::string {
     try {
       const Folder folder;
@@ -1011,7 +1064,7 @@ TEST(StateFile, StatesTheLengthOfItsElements) {
   EXPECT_THAT(message(silent, "element_length_nm = 0.339\n"), HasSubstr("follow one another at 0.678 nm"));
   EXPECT_EQ(message(silent, "element_length_nm = 0.6\n"), "");  // stretched, but of this length
   std::string unreadable = stated;
-  unreadable.replace(unreadable.find("0.678\n0,"), 5, "long");
+  unreadable.replace(unreadable.find("0.678\n# "), 5, "long");
   EXPECT_THAT(message(unreadable, finer), HasSubstr("says \"long\" of the element length"));
 }
 

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "atomistic/child_process.hpp"
 #include "chart/chart.hpp"
+#include "io/child_process.hpp"
 #include "io/files.hpp"
 #include "io/removal.hpp"
 
@@ -36,7 +36,7 @@ std::optional<double> collected(const std::string& path) {
 
 std::optional<double> counted(const std::string& scene, const std::string& model, long steps) {
   const TemporaryFolder folder;
-  calibrate::ChildOptions options;
+  ChildOptions options;
   options.folder = folder.path();
   options.output = folder.file("callgrind.txt");
   options.quiet_seconds = options.max_seconds = 600;
@@ -49,8 +49,8 @@ std::optional<double> counted(const std::string& scene, const std::string& model
                                               scene,
                                               model,
                                               std::to_string(steps)};
-  const calibrate::ChildEnd end = calibrate::run_child(arguments, options);
-  return end.kind == calibrate::ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
+  const ChildEnd end = run_child(arguments, options);
+  return end.kind == ChildEnd::Kind::exited && end.code == 0 ? collected(options.output) : std::nullopt;
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // Measures one point: runs a model through the protocol of a scene and records cost and observables.
-#include <omp.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "observe/spacing.hpp"
 #include "scene/scene_to_model.hpp"
 #include "sim/contact/contact_law.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -192,7 +192,7 @@ ChartPoint describe(const ChartScene& scene, const ChartModel& model, const Spec
 }
 
 void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
-  omp_set_num_threads(1);
+  use_threads(1);
   const Simulation start = s.starts_at_rest ? relaxed(s, s.state, start_tolerance)
                                             : Simulation(s.topology, s.interaction, s.held(), s.state, s.time_step);
   const State& untwisted = start.state();
@@ -218,7 +218,7 @@ void measure(const Specimen& s, const ChartModel& model, ChartPoint& point) {
 }
 
 void step_for_counting(const std::string& scene_name, const std::string& model_name, long steps) {
-  omp_set_num_threads(1);
+  use_threads(1);
   const ChartScene& scene = find_chart_scene(scene_name);
   const std::vector<ChartModel> models = chart_models(scene, false);
   const ChartModel& model = find_chart_model(models, model_name);

@@ -13,11 +13,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "atomistic/potential.hpp"
+#include "atoms/potential.hpp"
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/draft.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -46,7 +46,7 @@ std::vector<Place> places(const ParametrizeArguments& a) {
   for (const std::string& text : a.tubes)
     for (const std::string& potential : a.potentials) {
       const Chirality c = calibrate::parse_chirality(text);
-      calibrate::find_potential(potential);
+      find_potential(potential);
       const Place place{text, potential, fmt::format("cnt-{}-{}-{}", c.n, c.m, potential), a.out};
       const auto twice = [&](const Place& other) { return other.name == place.name; };
       if (std::none_of(all.begin(), all.end(), twice)) all.push_back(place);
@@ -72,7 +72,7 @@ int calibrate(const Place& place) {
     numbers.replace();
     return code;
   } catch (const std::exception& e) {
-    write_file_atomically(place.file("-error.txt"), failure_words(e) + "\n");
+    write_file_atomically(place.file("-error.txt"), error_words(e) + "\n");
     return 3;
   }
 }
@@ -174,7 +174,7 @@ int measure_friction(const PairPlace& pair) {
     if (!std::freopen("/dev/null", "w", stdout)) throw std::runtime_error(std::strerror(errno));
     return calibrate::friction_command(f);
   } catch (const std::exception& e) {
-    write_file_atomically(pair.file("-error.txt"), failure_words(e) + "\n");
+    write_file_atomically(pair.file("-error.txt"), error_words(e) + "\n");
     return 3;
   }
 }

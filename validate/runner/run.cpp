@@ -15,7 +15,7 @@
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
 #include "io/disk_full.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
@@ -156,8 +156,8 @@ Outcome outcome_of(const Task& task, const Run& run) {
   } catch (const NotApplicable& reason) {
     o.not_applicable = reason.what();
   } catch (const std::exception& e) {
-    o.error = failure_words(e);
-    names_files = failure_code(e) == 3 && !dynamic_cast<const DiskFull*>(&e);
+    o.error = error_words(e);
+    names_files = error_code(e) == 3 && !dynamic_cast<const DiskFull*>(&e);
   }
   o.result.seconds = seconds_since(begin);
   if (!run.arguments.fresh && !names_files) remove_work_folder(work);
@@ -209,7 +209,7 @@ int work(const Task& task, const Run& run) {
     store(outcome_of(task, run), run);
     return 0;
   } catch (const std::exception& e) {
-    tell_failure(fmt::format("ropewalk validate: {}", task.of->name).c_str(), e);
+    report_error(fmt::format("ropewalk validate: {}", task.of->name).c_str(), e);
     return 3;
   }
 }

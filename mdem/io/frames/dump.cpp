@@ -301,9 +301,7 @@ struct DumpReader::Impl {
 };
 
 DumpReader::DumpReader(const std::string& path) {
-  refuse_devices(path);
-  impl_.reset(new Impl{path, std::ifstream(path), "", 0, {}, {0, 0}});
-  if (!impl_->file) throw file_error(path, "cannot be opened", errno);
+  impl_.reset(new Impl{path, opened_stream(path), "", 0, {}, {0, 0}});
 }
 
 DumpReader::~DumpReader() = default;

@@ -47,7 +47,7 @@ from ._core import version as __version__  # noqa: E402
 from .energy import StateEnergy, energy  # noqa: E402
 from .errors import Error, InputError, NumericalError, ProgramError  # noqa: E402
 from .frames import Frame, Frames  # noqa: E402
-from .log import Log  # noqa: E402
+from .log import Log, Mean  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
 from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
 from .programs import (  # noqa: E402
@@ -64,7 +64,7 @@ from .threads import set_threads, threads  # noqa: E402
 
 __all__ = [
     "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit", "Log",
-    "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
+    "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
     "Simulation", "State", "StateEnergy", "ValidationCase", "calibrate", "compare", "convert", "energy", "errors", "gather",
     "modes", "observables", "open", "parameter_sets", "parametrize", "picture", "plan", "rest", "resume", "run", "set_threads", "sweep",
     "threads", "threshold", "validate", "view", "write_state",

@@ -2,7 +2,24 @@
 from __future__ import annotations
 
 import os
+import stat
 import tempfile
+
+from .errors import InputError
+
+
+def read_regular(path: str | os.PathLike[str]) -> bytes:
+    """The content of a regular file (no unit). Raises InputError for a pipe, which nobody may ever write to, or a device.
+
+    Arguments:
+        path: the file
+    """
+    name = os.fspath(path)
+    handle = os.open(name, os.O_RDONLY | os.O_NONBLOCK)
+    with os.fdopen(handle, "rb") as file:
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            raise InputError(f"{os.fsdecode(name)}: is not a regular file; name a file", os.fsdecode(name))
+        return file.read()
 
 
 def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
@@ -19,7 +36,10 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
             file.write(content)
         umask = os.umask(0)
         os.umask(umask)
-        os.chmod(part, 0o666 & ~umask)
+        try:
+            os.chmod(part, 0o666 & ~umask)
+        except OSError:  # a file system without permissions
+            pass
         os.replace(part, target)
     except BaseException:
         os.unlink(part)

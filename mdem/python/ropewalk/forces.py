@@ -7,6 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .numbers import finite, finite_array
 from .state import Elements, Floats, Instant
 
 OwnForce = Callable[[Instant], Any]
@@ -16,11 +17,9 @@ _Found = tuple[Floats, Floats, Optional[float]]
 def _vectors(values: Optional[ArrayLike], elements: int, what: str) -> Floats:
     if values is None:
         return np.zeros((elements, 3))
-    array = np.asarray(values, float)
+    array = finite_array(values, f"{what} of a force of one's own")
     if array.shape[-1:] != (3,) or array.size != 3 * elements:
         raise ValueError(f"a force of one's own has {what} of shape {array.shape}; ({elements}, 3) is needed")
-    if not np.isfinite(array).all():
-        raise ValueError(f"a force of one's own has {what} that are not finite")
     return array.reshape(elements, 3)
 
 
@@ -39,8 +38,7 @@ def checked(force: OwnForce, tube_begin: Sequence[int], element_length_nm: float
             raise ValueError("a force of one's own returns forces, torques and energy at most")
         forces, torques, energy = (*parts, None, None, None)[:3]
         n = len(arrays[0])
-        if energy is not None and not np.isfinite(energy):
-            raise ValueError(f"the energy of a force of one's own is {energy}")
-        return _vectors(forces, n, "forces"), _vectors(torques, n, "torques"), None if energy is None else float(energy)
+        found_energy = None if energy is None else finite(energy, "the energy of a force of one's own")
+        return _vectors(forces, n, "the forces"), _vectors(torques, n, "the torques"), found_energy
 
     return call

@@ -4,7 +4,7 @@ from __future__ import annotations
 import io
 import os
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,22 @@ from numpy.typing import NDArray
 from . import _core
 from .files import write_whole
 from .observables import index_of, observables
+
+
+class Mean(NamedTuple):
+    """A mean over time.
+
+    Keys:
+        value: the mean, in the unit of its column
+        error: its standard error, likewise; nan: the time is too short for one
+        correlation_ps: correlation time, ps; nan: the value does not change
+        needed_ps: time that an error needs, ps, where there is none; else 0
+    """
+
+    value: float
+    error: float
+    correlation_ps: float
+    needed_ps: float
 
 
 class Log(dict[str, NDArray[Any]]):
@@ -57,6 +73,17 @@ class Log(dict[str, NDArray[Any]]):
         time = self["time_ps"]
         span = f", {time[0]:g} to {time[-1]:g} ps" if len(time) else ""
         return f"<Log: {len(self)} columns, {self.rows} rows{span}>"
+
+    def mean(self, name: str, last_ps: Optional[float] = None) -> Mean:
+        """The mean of a column (in its unit) over time, with its standard error.
+
+        Arguments:
+            name: of the column
+            last_ps: over the last rows of so much time, ps; None: over all
+        """
+        time, values = self["time_ps"], self[name].astype(np.float64)
+        chosen = np.ones(len(time), dtype=bool) if last_ps is None or not len(time) else time >= time[-1] - last_ps - 1e-9
+        return Mean(*_core.mean_over_time(time[chosen].tolist(), values[chosen].tolist()))
 
     @property
     def rows(self) -> int:

@@ -160,7 +160,7 @@ def gather(
         campaign: a campaign, or its directory
         columns: observables; empty: all
         mean_ps: means over the last rows of so much time, ps, each with its standard error in a column NAME_error, which is
-            nan where that time is too short for one; None: the last row
+            nan where that time is too short for one, and with NAME_correlation_ps; None: the last row
         series: all rows of all logs instead of the ends
     """
     directory = campaign.path if isinstance(campaign, Campaign) else os.fspath(campaign)
@@ -261,6 +261,7 @@ def compare(
     *,
     x: str = "time_ps",
     y: Sequence[str] = (),
+    mean_ps: Optional[float] = None,
     page: Optional[str | os.PathLike[str]] = None,
     force: bool = False,
 ) -> dict[str, NDArray[Any]]:
@@ -272,16 +273,17 @@ def compare(
         runs: runs and campaigns, or their directories
         x: observable on the horizontal axis
         y: observables; empty: the usual ones that vary
+        mean_ps: one row for each run instead, of means over the last so many ps with their errors and correlation times; None: curves
         page: a page with all curves (HTML) to write as well
         force: replaces an existing page
     """
     names = [r.path if isinstance(r, Campaign) else _directory(r) for r in runs]
     words = ["--y", ",".join(y)] if y else []
     if page is not None:
-        _call(["compare", *names, f"--page={os.fspath(page)}", f"--x={x}", *_options(force=force), *words])
+        _call(["compare", *names, f"--page={os.fspath(page)}", f"--x={x}", *_options(force=force, mean=mean_ps), *words])
     with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
         path = os.path.join(folder, "curves.csv")
-        _call(["compare", *names, f"--csv={path}", f"--x={x}", *words])
+        _call(["compare", *names, f"--csv={path}", f"--x={x}", *_options(mean=mean_ps), *words])
         with open(path, encoding="utf-8", newline="") as file:
             return table_of(file.read())
 
@@ -292,6 +294,7 @@ def picture(
     *,
     at_ps: Sequence[float] = (),
     seen_from: str = "side",
+    colour: Optional[str] = None,
     curves: Sequence[str] = (),
     sections: bool = False,
     width: Optional[float] = None,
@@ -306,6 +309,7 @@ def picture(
         out: file to write: .svg, .pdf or .png
         at_ps: times of the states, ps; empty: four over the run
         seen_from: "side" (the largest deflection in the page), "x", "y", "z", or two angles "30,20" in deg
+        colour: what tubes are coloured by, as "tension" or "shell"; None: bending moment, where frames have it
         curves: charts below: columns of log.csv, "twist_eV+bend_eV" for two in one
         sections: the cross-section of each state beside it
         width: of the figure, pixels (no unit)
@@ -315,7 +319,7 @@ def picture(
     """
     lists = {"at": ",".join(map(repr, map(float, at_ps))) or None, "curves": ",".join(curves) or None}
     _call(["picture", _directory(run), "-o", os.fspath(out), f"--from={seen_from}",
-           *_options(sections=sections, width=width, highest=highest, zoom=zoom, force=force, **lists)])
+           *_options(colour=colour, sections=sections, width=width, highest=highest, zoom=zoom, force=force, **lists)])
     return os.fspath(out)
 
 
@@ -364,17 +368,26 @@ def convert(
     return os.fspath(out)
 
 
-def errors(run: Run | str | os.PathLike[str], *, jobs: Optional[int] = None, again: bool = False) -> dict[str, Any]:
+def errors(
+    run: Run | str | os.PathLike[str],
+    *,
+    numerics: bool = False,
+    mean_ps: Optional[float] = None,
+    jobs: Optional[int] = None,
+    again: bool = False,
+) -> dict[str, Any]:
     """Errors of a finished run's results that follow from those of its sets, files of friction and typed numbers, as
     `ropewalk errors`, which repeats the run: what `--json` says, with units in the names.
 
     Arguments:
         run: a run, or its directory
+        numerics: the whole error of each result, also by elements, time step, rate, and other starts; "decides" names its largest part
+        mean_ps: with `numerics`, of means over the last so many ps; None: of the last row
         jobs: runs at a time; None: one for each core (no unit)
         again: repeats also what is finished
     """
     found: dict[str, Any] = json.loads(_call(["errors", _directory(run), "--json", "--quiet",
-                                              *_options(jobs=jobs, again=again)]))
+                                              *_options(numerics=numerics, mean=mean_ps, jobs=jobs, again=again)]))
     return found
 
 

@@ -57,7 +57,7 @@ def run(
         threads: threads; None: as of set_threads(), at first all cores (no unit)
         on_limit: where a limit of [limits] is passed: "warn", "stop" or "refine" (it then goes on in OUT.fine)
         wall_time_s: stops with a checkpoint before the run has taken so long, s
-        instructions: instruction set, for the same bits on other processors; it holds for the process during the run
+        instructions: instruction set, for the same bits on other processors; runs of other threads may have others
         device: moves the elements: "gpu", "opencl:TEXT", "c++"; None: this processor alone (no unit)
         force: replaces an earlier run in `out`
         forces: forces of one's own, as Simulation takes them (eV/nm, eV), functions of the Instant alone: a run may go back

@@ -101,7 +101,8 @@ class Run:
 
     def to_mdanalysis(self) -> Any:
         """The frames as an MDAnalysis.Universe in its units: positions, radii and box in Å, masses in u, times in ps. `dt` is
-        that between the first two frames."""
+        that between the first two frames. A residue is a tube, whose number is its resid; its resname and the segment are the
+        parameter set of its type, so that "resid 0" and "segid cnt-5-5-tersoff" select."""
         path = _core.frames_file(self._path)
         if not path.endswith(".gsd"):
             raise InputError(f"{path}: has positions that MDAnalysis takes relative to a box that moves; make frames.gsd by "
@@ -123,6 +124,11 @@ class Run:
             tube = frames[0].tube
             universe.atoms.masses = core.mass[tube] / _AMU
             universe.atoms.radii = 10 * core.radius[tube]
+            names = [_core.parameter_set(path)[1] for path in core.sets]
+            universe.add_TopologyAttr("resnames", [names[of_type] for of_type in core.tube_type])
+            for of_type, name in enumerate(names):
+                segment = universe.add_Segment(segid=name)
+                universe.residues[core.tube_type == of_type].segments = segment
         universe.trajectory.add_transformations(in_its_units)
         return universe
 

@@ -2,14 +2,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Optional, Union, overload
 
 from . import _core
 from .errors import Error, InputError
-from .files import write_whole
+from .files import read_regular, write_whole
 from .forces import OwnForce, checked
+from .numbers import finite, whole
 from .observables import index_of, observables
 from .scene import Scene, as_scene
 from .state import Elements, Floats, State
@@ -80,7 +83,7 @@ class Simulation:
     """A scene in motion, step by step. Forces, loads, damping and thermostat are those of `ropewalk run`.
 
     The motion is the same, bit for bit, on any number of threads, and however the steps are divided into calls. The
-    program also halves its step where the account of energy does not close, watches limits and ends by [[stop]]; here you
+    program also halves its step where the energy balance does not close, watches limits and ends by [[stop]]; here you
     see all of it by measure("balance_eV"), measure("kinked") and so on, and set `divided` yourself.
 
     Another Python thread may run while this one steps. The simulation itself belongs to one thread at a time.
@@ -105,11 +108,29 @@ class Simulation:
         self._core = _core.Simulation(core, own)
         self._hooks: list[tuple[Callable[[Simulation], object], int]] = []
         self._observers: list[tuple[Callable[[Simulation], object], int]] = []
-        self._calling = False
+        self._moving = threading.Lock()
+        self._mover = 0
 
     def __repr__(self) -> str:
         """Scene, step and time, ps."""
-        return f"<Simulation of {self._scene.name}: step {self.step_number}, {self.time_ps:g} ps>"
+        try:
+            return f"<Simulation of {self._scene.name}: step {self.step_number}, {self.time_ps:g} ps>"
+        except RuntimeError:  # at work
+            return f"<Simulation of {self._scene.name}, at work>"
+
+    @contextmanager
+    def _motion(self, what: str) -> Iterator[None]:
+        """Around all that moves the state: it belongs to one call at a time."""
+        if not self._moving.acquire(blocking=False):
+            if self._mover == threading.get_ident():
+                raise Error(f"a hook, an observer or a force cannot {what} the simulation that calls it")
+            raise RuntimeError("the simulation is at work in another thread")
+        self._mover = threading.get_ident()
+        try:
+            yield
+        finally:
+            self._mover = 0
+            self._moving.release()
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled by the scene, the forces and the checkpoint, without hooks and observers (no unit)."""
@@ -154,7 +175,7 @@ class Simulation:
 
     @divided.setter
     def divided(self, parts: int) -> None:
-        self._core.divided = parts
+        self._core.divided = whole(parts, "divided", 1, 1024)
 
     # --- motion ---
 
@@ -166,14 +187,11 @@ class Simulation:
             energies: whether the last step computes the energies, a tenth of a step; without, they are computed when
                 they are asked for, which takes a whole evaluation of the forces
         """
-        if n != int(n) or n < 0 or n > _most_steps:
-            raise ValueError(f"{n} is no number of steps: give 0 to {_most_steps}")
-        n = int(n)
-        if self._calling:
-            raise Error("a hook or an observer cannot step the simulation that calls it")
-        if not self._observers and not self._hooks:
-            self._core.steps(n, energies)
-            return
+        n = whole(n, "the number of steps", 0, _most_steps)
+        with self._motion("step"):
+            self._steps(n, energies)
+
+    def _steps(self, n: int, energies: bool = True) -> None:
         end = self.step_number + n
         while self.step_number < end:
             self._call(self._hooks)
@@ -188,10 +206,12 @@ class Simulation:
         Arguments:
             time_ps: ps
         """
-        left = time_ps - self.time_ps
-        if left < -1e-9:
-            raise ValueError(f"{time_ps} ps lie before {self.time_ps} ps")
-        self.step(round(left / self._core.time_step))
+        time_ps = finite(time_ps, "time_ps")
+        with self._motion("step"):
+            left = time_ps - self.time_ps
+            if left < -1e-9:
+                raise ValueError(f"{time_ps} ps lie before {self.time_ps} ps")
+            self._steps(whole(round(left / self._core.time_step), "the number of steps", 0, _most_steps))
 
     def relax(
         self, force_eV_per_nm: Optional[float] = None, energy: Optional[float] = None, *, max_steps: Optional[int] = None
@@ -205,14 +225,14 @@ class Simulation:
             energy: relative error of the energy of the bonds at the end, by estimate (no unit)
             max_steps: at most so many steps (no unit)
         """
-        if max_steps is not None and not 0 <= max_steps <= _most_steps:
-            raise ValueError(f"{max_steps} is no number of steps: give 0 to {_most_steps}")
         of_scene = self._scene._core.goal
-        return Relaxed(*self._core.relax(
-            of_scene[0] if force_eV_per_nm is None else force_eV_per_nm,
-            of_scene[1] if energy is None else energy,
-            of_scene[2] if max_steps is None else max_steps,
-        ))
+        goal = (
+            of_scene[0] if force_eV_per_nm is None else finite(force_eV_per_nm, "force_eV_per_nm", 0),
+            of_scene[1] if energy is None else finite(energy, "energy", 0),
+            of_scene[2] if max_steps is None else whole(max_steps, "max_steps", 0, _most_steps),
+        )
+        with self._motion("relax"):
+            return Relaxed(*self._core.relax(*goal))
 
     def change(self, changes: Mapping[str, Any]) -> None:
         """From now on grips, loads, twist and bath are those of `scene.changed(changes)` at this time: a moment jumps to its new
@@ -240,9 +260,7 @@ class Simulation:
             hook: gets this simulation and may change() it; what it returns is not used, what it raises ends step()
             every: steps (no unit)
         """
-        if every < 1:
-            raise ValueError("`every` is 1 or more")
-        self._hooks.append((hook, every))
+        self._hooks.append((hook, whole(every, "every", 1)))
 
     def remove_hook(self, hook: Callable[[Simulation], object]) -> None:
         """Takes a hook away.
@@ -259,9 +277,7 @@ class Simulation:
             observer: gets this simulation; what it returns is not used, what it raises ends step()
             every: steps (no unit)
         """
-        if every < 1:
-            raise ValueError("`every` is 1 or more")
-        self._observers.append((observer, every))
+        self._observers.append((observer, whole(every, "every", 1)))
 
     def remove_observer(self, observer: Callable[[Simulation], object]) -> None:
         """Takes an observer away.
@@ -272,13 +288,9 @@ class Simulation:
         self._observers = [(f, every) for f, every in self._observers if f is not observer]
 
     def _call(self, functions: Sequence[tuple[Callable[[Simulation], object], int]]) -> None:
-        self._calling = True
-        try:
-            for function, every in list(functions):
-                if self.step_number % every == 0:
-                    function(self)
-        finally:
-            self._calling = False
+        for function, every in list(functions):
+            if self.step_number % every == 0:
+                function(self)
 
     # --- what it is like now ---
 
@@ -345,11 +357,11 @@ class Simulation:
             checkpoint: what checkpoint() returned, or the file that save() wrote (no unit)
         """
         if not isinstance(checkpoint, bytes):
-            with open(checkpoint, "rb") as file:
-                checkpoint = file.read()
-        self._core.restore(checkpoint)
-        text = self._core.driven_as
-        self._scene = Scene.from_toml(text) if text else self._of_start
+            checkpoint = read_regular(checkpoint)
+        with self._motion("restore"):
+            self._core.restore(checkpoint)
+            text = self._core.driven_as
+            self._scene = Scene.from_toml(text) if text else self._of_start
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the checkpoint to a file for restore(), whole or not at all.

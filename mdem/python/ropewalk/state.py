@@ -193,7 +193,9 @@ def write_state(path: str | os.PathLike[str], position: ArrayLike, orientation: 
         position: (tubes, elements, 3), centres of the elements, nm
         orientation: (tubes, elements, 4), quaternions w, x, y, z, which turn z into the tube axis (no unit)
     """
-    places, turns = np.asarray(position, float), np.asarray(orientation, float)
+    from .numbers import finite_array
+
+    places, turns = finite_array(position, "position"), finite_array(orientation, "orientation")
     if places.ndim != 3 or places.shape[2] != 3 or turns.shape != (*places.shape[:2], 4):
         raise ValueError(
             f"position {places.shape} and orientation {turns.shape}: (tubes, elements, 3) and (tubes, elements, 4) are "

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Optional
 
 from . import _core
+from .numbers import whole
 
 _forked = False
 
@@ -35,8 +36,6 @@ def set_threads(n: int) -> None:
     A process that was forked from one that has simulated has one thread, and cannot have more.
 
     Arguments:
-        n: threads, from 1 (no unit)
+        n: threads, 1 to 1024 (no unit)
     """
-    if n < 1:
-        raise ValueError("the number of threads is 1 or more")
-    _core.set_threads(n)
+    _core.set_threads(whole(n, "the number of threads", 1, _core.most_threads))

@@ -1,8 +1,8 @@
 // The page: legend, time, what is pointed at, pictures, and what buttons and keys do.
 import {$, check, elementBegin, elements, facts, fieldValue, frames, jointBegin, numberText, tickText, tubes, unpack, withUnit}
   from './frames.js';
-import {canvas, closeScene, cut, diverging, jointAt, linksShown, makeScene, mapped, placeFrame, renderer, right, sequential, shown,
-  sources, towards, up, updateScene} from './scene.js';
+import {canvas, closeScene, cut, diverging, gone, jointAt, linksShown, makeScene, mapped, placeFrame, placeOf, renderer, right,
+  sequential, shown, sources, towards, tubeOfElement, up, updateScene} from './scene.js';
 import {animation, camera, controls, fitAgain, lookFrom, makeCamera, render, request, shift, sides, still, turn, zoom}
   from './camera.js';
 
@@ -127,6 +127,59 @@ function elementAt(event) {
   return best;
 }
 
+// As messages and tables count them, from 0: an element of a tube of the scene, whatever parts it has broken into.
+function wordsOf(element) {
+  const piece = tubeOfElement(element), [tube, first] = facts.piece_of[piece];
+  return `tube ${tube}, element ${first + element - elementBegin[piece]}`;
+}
+
+// -1: there is none.
+function elementOf(tube, element) {
+  const piece = facts.piece_of.findIndex(([t, first], k) =>
+    t === tube && element >= first && element < first + elementBegin[k + 1] - elementBegin[k]);
+  return piece < 0 ? -1 : elementBegin[piece] + element - facts.piece_of[piece][1];
+}
+
+// Looks at an element from near; with a time, in the first frame from then on.
+function goTo(element, time) {
+  play(false);
+  gone.element = element;
+  const after = facts.time_ps.findIndex((t) => t >= time - 1e-9);
+  showFrame(time === undefined ? shown.frame : after < 0 ? frames - 1 : after);
+  const place = placeOf(element, new THREE.Vector3());
+  const arm = camera.position.clone().sub(controls.target);
+  arm.setLength(Math.min(arm.length(), 40 * facts.tube_radius[tubeOfElement(element)]));
+  controls.target.copy(place);
+  camera.position.copy(place).add(arm);
+  controls.update();
+  $('gone').textContent = wordsOf(element);
+  const [tube, first] = facts.piece_of[tubeOfElement(element)];
+  $('go-tube').value = tube;
+  $('go-element').value = first + element - elementBegin[tubeOfElement(element)];
+  request();
+}
+
+function tryToGo(tube, element) {
+  const at = elementOf(tube, element);
+  if (at >= 0) return goTo(at);
+  const of = facts.piece_of.map(([t], k) => t === tube ? elementBegin[k + 1] - elementBegin[k] : 0).reduce((a, b) => a + b, 0);
+  $('gone').textContent = of > 0 ? `the elements of tube ${tube} are 0 to ${of - 1}`
+    : `the tubes are 0 to ${Math.max(...facts.piece_of.map(([t]) => t))}`;
+}
+
+function listMarks() {
+  for (const m of facts.marks) {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.dataset.mark = m.limit;
+    button.textContent = `${m.limit}, ${m.time_ps > 0 ? `from ${numberText(m.time_ps)} ps on` : 'from the start on'}: ` +
+      wordsOf(m.element) + (m.held_by ? `, at ${m.held_by}` : '');
+    button.onclick = () => goTo(m.element, m.time_ps);
+    $('marks').append(button);
+  }
+  if (facts.marks.length > 0) $('marks').prepend('Limits that were passed, in cages: ');
+}
+
 let pointed = null;
 function showPointed() {
   if (!pointed) {
@@ -134,7 +187,7 @@ function showPointed() {
     return;
   }
   const {tube, element} = pointed, s = shown.source;
-  const words = `tube ${tube + 1}, element ${element - elementBegin[tube] + 1} of ${elementBegin[tube + 1] - elementBegin[tube]}`;
+  const words = wordsOf(element);
   $('pointed').textContent = s.plain ? words : words + ': ' + (s.tube
     ? `${s.name.toLowerCase()} ${s.tube[tube]}`
     : withUnit(numberText(fieldValue(s.field, shown.frame, element)), s.unit));
@@ -281,6 +334,7 @@ function listen() {
   $('cut-side').onclick = otherSide;
   for (const b of document.querySelectorAll('[data-side]')) b.onclick = () => lookFrom(...sides[b.dataset.side]);
   $('picture').onclick = savePicture;
+  $('go').onsubmit = (e) => { e.preventDefault(); tryToGo($('go-tube').valueAsNumber, $('go-element').valueAsNumber); };
   canvas.addEventListener('pointermove', (e) => {
     if (e.buttons && e.pointerType === 'mouse') return;
     pointed = elementAt(e);
@@ -313,7 +367,7 @@ function listen() {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', request);
 }
 
-// view.html#frame=12&colour=Shell&cut=right&at=0.3&look=end opens the page like that. Frames count from 1.
+// view.html#frame=12&colour=Shell&cut=right&at=0.3&look=end&tube=3&element=7 opens the page like that. Frames count from 1.
 function followAddress() {
   const wish = new URLSearchParams(location.hash.slice(1));
   const colour = sources.findIndex((s) => s.name === wish.get('colour'));
@@ -322,6 +376,7 @@ function followAddress() {
   if (sides[wish.get('look')]) lookFrom(...sides[wish.get('look')]);
   if (wish.has('at')) moveCut(Number(wish.get('at')) || 0);
   if (['right', 'towards', 'up'].includes(wish.get('cut'))) chooseCut(wish.get('cut'));
+  if (wish.has('tube')) tryToGo(Number(wish.get('tube')), Number(wish.get('element')) || 0);
 }
 
 function about() {
@@ -348,6 +403,7 @@ async function start() {
   makeCamera();
   listen();
   about();
+  listMarks();
   showLegend();
   showFrame(frames - 1);
   lookFrom(...sides.oblique);

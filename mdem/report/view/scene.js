@@ -192,6 +192,41 @@ function makeLinks() {
   scene.add(rods);
 }
 
+// Cages about elements that passed a limit, from then on, and about the one that was gone to. They show through tubes.
+export const gone = {element: -1};
+const cages = [];
+
+function makeCages() {
+  const shape = new THREE.SphereGeometry(1, 10, 8);
+  for (let k = 0; k <= facts.marks.length; ++k) {
+    const cage = new THREE.Mesh(shape, new THREE.MeshBasicMaterial(
+      {color: k < facts.marks.length ? 0xe07b00 : 0xc2185b, wireframe: true, depthTest: false, transparent: true}));
+    cage.frustumCulled = false;
+    cage.renderOrder = 1;
+    cages.push(cage);
+    scene.add(cage);
+  }
+}
+
+export const tubeOfElement = (element) => elementBegin.findIndex((begin) => begin > element) - 1;
+
+// Its middle, in this frame.
+export function placeOf(element, into) {
+  const joint = element + tubeOfElement(element);
+  return jointAt(joint, into).add(jointAt(joint + 1, u)).multiplyScalar(0.5);
+}
+
+function placeCages() {
+  const time = facts.time_ps[shown.frame];
+  cages.forEach((cage, k) => {
+    const mark = facts.marks[k], element = mark ? mark.element : gone.element;
+    cage.visible = element >= 0 && (!mark || mark.time_ps <= time + 1e-9);
+    if (!cage.visible) return;
+    placeOf(element, cage.position);
+    cage.scale.setScalar((mark ? 1.6 : 1.9) * facts.tube_radius[tubeOfElement(element)]);
+  });
+}
+
 export function makeScene() {
   const context = canvas.getContext('webgl2', {antialias: false, alpha: false, powerPreference: 'high-performance'});
   if (!context) throw new Error('this browser offers no WebGL 2; `ropewalk picture` makes pictures without it');
@@ -216,6 +251,7 @@ export function makeScene() {
   discs.frustumCulled = false;
   scene.add(discs);
   makeLinks();
+  makeCages();
 }
 
 // --- A frame ------------------------------------------------------------------------------------------------
@@ -368,6 +404,7 @@ export function updateScene() {
   paintElements();
   placeDiscs();
   placeLinks();
+  placeCages();
 }
 
 // Nothing is drawn any more.

@@ -178,17 +178,22 @@ ViewPage page_with(const ViewInput& in, int levels) {
     numbers.push_back({{"name", n.name}, {"meaning", n.meaning}, {"values", n.values}});
   Json links = Json::array();  // infinity is null in JSON
   for (const ViewLink& l : in.links) links.push_back({l.a, l.b, l.formed, l.broke});
+  Json marks = Json::array();
+  for (const ViewMark& m : in.marks)
+    marks.push_back({{"limit", m.limit}, {"held_by", m.held_by}, {"time_ps", m.time_ps}, {"element", m.element}});
   for (int k = 0; k <= 8; ++k) colours.push_back(viridis(k / 8.0));
   const Json facts = {{"name", in.name},
                       {"time_ps", in.time_ps},
                       {"step", in.step},
                       {"stored_frames", in.stored_frames},
                       {"tube_begin", in.tube_begin},
+                      {"piece_of", in.piece_of},
                       {"tube_radius", in.tube_radius},
                       {"position", position},
                       {"fields", fields},
                       {"tube_numbers", numbers},
                       {"links", links},
+                      {"marks", marks},
                       {"right", as_json(in.camera.right)},
                       {"up", as_json(in.camera.up)},
                       {"towards", as_json(in.camera.towards)},

@@ -2,6 +2,7 @@
 // asks for no other file and no network.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,9 +31,18 @@ struct ViewLink {
   double formed = 0, broke = 0;  // ps; broke: infinity, it holds at the end
 };
 
+// A limit of the model that an element passed.
+struct ViewMark {
+  std::string limit, held_by;  // key of the limit; "the upper clamp" where something holds the place
+  double time_ps = 0;          // from then on
+  int element = 0;             // of all
+};
+
 struct ViewInput {
   std::string name;
-  std::vector<int> tube_begin;      // as of a Topology
+  std::vector<int> tube_begin;  // as of a Topology
+  // Of each tube: the tube of the scene that it is a piece of, and where in it the piece begins. Both from 0.
+  std::vector<std::array<int, 2>> piece_of;
   std::vector<double> tube_radius;  // nm, of each tube
   // One entry a frame, in the order of time. Element e of tube t reaches from joint e + t to joint e + t + 1.
   std::vector<double> time_ps;
@@ -41,6 +51,7 @@ struct ViewInput {
   std::vector<ViewField> fields;
   std::vector<ViewTubeNumber> tube_numbers;
   std::vector<ViewLink> links;
+  std::vector<ViewMark> marks;
   RopeCamera camera;              // the side from which the page looks first
   std::size_t stored_frames = 0;  // frames of the run, of which some were chosen
 };

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "io/child_process.hpp"
 #include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
@@ -16,7 +17,7 @@
 #include "report/drawing.hpp"
 #include "report/movie_picture.hpp"
 #include "report/page.hpp"
-#include "run/pages/run_views.hpp"
+#include "run/pages/colour_fields.hpp"
 
 namespace ropewalk {
 namespace {
@@ -72,8 +73,10 @@ MovieSize make_movie(const RunDirectory& dir, const MovieOptions& a) {
   const std::size_t stored = frame_times(dir, prepared.topology).size();
   std::vector<RopeView> views;
   const StoredEvents events(dir.events(), prepared.topology);
-  for (const StoredFrame& f : frames_of(dir, prepared.topology, evenly(stored, static_cast<std::size_t>(a.frames))))
-    views.push_back(view_of(events, f, std::numeric_limits<double>::quiet_NaN()));
+  const std::vector<StoredFrame> frames =
+      frames_of(dir, prepared.topology, evenly(stored, static_cast<std::size_t>(a.frames)));
+  for (const StoredFrame& f : frames) views.push_back(view_of(events, f, std::numeric_limits<double>::quiet_NaN()));
+  if (!a.colour.empty()) colour_by(a.colour, events, frames, scene, prepared, views);
   const double radius = prepared.topology.largest_radius();
   const RopeCamera camera = camera_from(a.from, views, radius, a.width - 40, 0.5625 * a.width);
   // Beside the movie, where there should be room.

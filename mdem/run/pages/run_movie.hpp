@@ -10,6 +10,7 @@ namespace ropewalk {
 struct MovieOptions {
   std::string file;           // .webm or .mp4
   std::string from = "side";  // see camera_from()
+  std::string colour;         // a word of colour_words(); empty: bending moment where frames have it
   int frames = 100;           // at most
   double fps = 15;
   int width = 1280;    // pixels

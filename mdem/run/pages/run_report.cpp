@@ -148,6 +148,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
       in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
   in.log = read_log(dir.log());
   in.errors = read_run_errors(dir.path, in.log);
+  in.whole = read_numeric_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
   if (const std::string words = plan_words(dir, scene, m); !words.empty())
     in.error_bars.insert(in.error_bars.begin(), words);
@@ -203,7 +204,10 @@ RopeView view_of(const StoredEvents& events, const StoredFrame& frame, double be
     for (int e = from; e < to; ++e) line.push_back(frame.state.position[static_cast<std::size_t>(e)]);
     view.tubes.push_back(std::move(line));
     view.radii.push_back(topology.type_of(t).radius);
-    if (!moment.empty()) view.bending_moment_eV.emplace_back(moment.begin() + from, moment.begin() + to);
+    if (moment.empty()) continue;
+    view.colour.emplace_back();
+    for (int e = from; e < to; ++e)
+      view.colour.back().push_back(std::fabs(moment[static_cast<std::size_t>(e)]) / units::nN_nm);
   }
   for (const auto& [a, b] : events.links_at(frame.state.time))
     view.links.push_back(

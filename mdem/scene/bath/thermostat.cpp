@@ -40,10 +40,11 @@ const KeyTable<ThermostatOptions>& thermostat_table() {
                  "\"langevin\": friction and noise on translation and rotation"),
        Key::custom("temperature_K", "K", required("300"),
                    "temperature of the bath; a list is points in time, [[ps, K], ...], with straight lines between",
-                   read_temperature),
+                   read_temperature)
+           .of_pace(SceneKey::Pace::course),
        Key::number("coupling_per_ps", {"1/ps", 1}, Bounds::positive(1e4), &O::coupling, required("0.1"),
                    "friction: velocities decay at this rate"),
-       Key::custom("seed", "", otherwise("1", "that of [start]"), "of its random numbers", read_seed)},
+       Key::custom("seed", "", otherwise("1", "that of [start]"), "seed of its random numbers", read_seed)},
       {}};
   return table;
 }

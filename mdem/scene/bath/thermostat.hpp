@@ -16,7 +16,9 @@ class ThermostatDrive : public Drive {
   bool is_random() const override { return options.temperature.largest() > 0; }
   void set_stepping(std::uint64_t lineage, Stepping& stepping) const override;
   const ThermostatOptions* thermostat() const override { return &options; }
-  std::string not_for_lammps() const override { return "thermostat"; }
+  std::string not_for_lammps() const override {
+    return make_thermostat(options)->acts_by_element() ? "" : "thermostat.method";
+  }
   std::optional<std::vector<std::pair<std::string, double>>> hastened(double) const override {
     return std::vector<std::pair<std::string, double>>();
   }

@@ -13,6 +13,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/end_moment.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/schedule_rows.hpp"
 
@@ -410,7 +411,7 @@ std::vector<Schedule::Point> in_time(const TomlTable& t, const Course& d) {
   return points;
 }
 
-GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) {
+GripAxis read_axis(const TomlTable& t, const std::string& axis, bool rotation) {
   std::string names;
   const Course* found = nullptr;
   for (const Course& d : courses) {
@@ -459,16 +460,17 @@ GripAxis read_drive(const TomlTable& t, const std::string& axis, bool rotation) 
 KeyOf<GripLoad> axis_key(std::size_t axis, const char* standard_word, const std::string& meaning) {
   const std::string name = grip_axis_names[axis];
   return KeyOf<GripLoad>::custom(
-      name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
-      [=](const TomlTable& t, const Scene&, GripLoad& grip) {
-        if (!t.has(name)) return;
-        if (t.is_string(name)) {
-          grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
-          return;
-        }
-        const Course& example = courses[axis < 3 ? 0 : 4];
-        grip.axes[axis] = read_drive(t.table(name, example_of(example)), name, axis >= 3);
-      });
+             name, "", standard(fmt::format("\"{}\"", standard_word)), meaning,
+             [=](const TomlTable& t, const Scene&, GripLoad& grip) {
+               if (!t.has(name)) return;
+               if (t.is_string(name)) {
+                 grip.axes[axis] = {t.word(name, Words<Is>{{"held", Is::held}, {"free", Is::free}}), {}, false};
+                 return;
+               }
+               const Course& example = courses[axis < 3 ? 0 : 4];
+               grip.axes[axis] = read_axis(t.table(name, example_of(example)), name, axis >= 3);
+             })
+      .of_pace(SceneKey::Pace::course);
 }
 
 void check_grip(const TomlTable& t, const Scene&, GripLoad& grip) {
@@ -489,16 +491,17 @@ const KeyTable<GripLoad>& table_of_grip() {
       "any number of these: one end in a clamp; what is not said is held",
       {Key::custom(
            "end", "", required("\"upper\""),
-           "\"lower\": the first elements; \"upper\": the last ones; \"both\": what is said holds for the "
-           "upper ones, and the lower ones have the opposite motion and load; a strain is that of both together",
+           "\"lower\": holds the first elements; \"upper\": holds the last ones; \"both\": the keys describe the "
+           "upper clamp, and the lower one has the opposite motion and load; a strain is the total of both",
            [](const TomlTable& t, const Scene&, GripLoad& grip) {
              const int word = t.word("end", Words<int>{{"lower", 0}, {"upper", 1}, {"both", 2}});
              grip.end = word == 0 ? lower_end : upper_end;
              grip.both = word == 2;
            }),
        Key::word("as", Words<bool>{{"disc", false}, {"each", true}}, &GripLoad::each, standard(),
-                 "one rigid \"disc\", or a clamp for \"each\" tube: all that is said below holds for every one"),
-       Key::integer("elements", 1, 1000, &GripLoad::depth, standard(), "of each tube, in the clamp")
+                 "\"disc\": one rigid clamp; \"each\": a clamp for each tube, and each follows the keys below"),
+       Key::integer("elements", 1, 1000, &GripLoad::depth, standard(),
+                    "number of elements of each tube in the clamp")
            .that_counts_held(),
        axis_key(0, "held", "\"held\", \"free\", or what it follows: { displacement_nm = ... }, { force_nN = ... }"),
        axis_key(1, "held", "as for x"),
@@ -516,7 +519,8 @@ const KeyTable<GripLoad>& table_of_grip() {
        Key::boolean("tilt_free", &GripLoad::tilt_free, standard(), "tubes tilt in the clamp"),
        Key::number("smooth_ps", unit::ps, Bounds::non_negative(longest_time), &GripLoad::smooth,
                    otherwise("10", "twice the travel of sound along the tubes for motions, 0 for loads"),
-                   "rates change over this time, at most over half of the line between two points")},
+                   "rates change over this time, at most over half of the line between two points")
+           .of_pace(SceneKey::Pace::time)},
       check_grip};
   return table;
 }
@@ -527,7 +531,7 @@ KeyTable<Selection> tubes_of_grip() {
   return {"grip",
           "",
           {Key::custom(
-              "tubes", "", standard("\"all\""), "that it holds: \"all\", or numbers from 0: [0, 3]",
+              "tubes", "", standard("\"all\""), "tubes that the clamp holds: \"all\", or numbers from 0: [0, 3]",
               [](const TomlTable& t, const Scene& scene, Selection& on) { read_tube_selection(t, scene, on); })},
           {}};
 }
@@ -589,7 +593,7 @@ GripLoad GripDrive::at(const GripLoad& grip, const Scene& scene, const Topology&
     free = std::max(free, free_length(scene, strands, strands.tube_of(topology.tube_begin[t])));
     const bool both = topology.begins_strand(t) && topology.ends_strand(t);
     if ((both ? 2 : 1) * load.depth > length)
-      throw InputError({scene.path, 0, "grip.elements"},
+      throw InputError(place_in(scene, "grip.elements"),
                        fmt::format("is {}, and tube {} has {}", load.depth, t, length),
                        "leave half of each tube to the other end");
     const int first = grip.end == lower_end ? 0 : length - load.depth;
@@ -608,14 +612,14 @@ void GripDrive::refuse_start(const Scene& scene, const Topology& topology, const
     for (const int e : grip->elements) {
       if (std::find(held.begin(), held.end(), e) == held.end()) continue;
       const int tube = topology.tube_of(e);
-      throw InputError({scene.path, 0, "grip"},
+      throw InputError(place_in(scene, "grip"),
                        fmt::format("two grips hold element {} of tube {}", e - topology.tube_begin[tube], tube),
                        "give each its own end or its own tubes");
     }
     held.insert(held.end(), grip->elements.begin(), grip->elements.end());
     for (std::size_t axis = 0; axis < grip->axes.size(); ++axis)
       if (grip->is_unfelt(axis, state))
-        throw InputError({scene.path, 0, fmt::format("grip.{}", grip_axis_names[axis])},
+        throw InputError(place_in(scene, fmt::format("grip.{}", grip_axis_names[axis])),
                          "is a load that nothing in the clamp feels: the elements are free of it",
                          "set slide_free, spin_free or tilt_free to false");
   }

@@ -12,6 +12,7 @@
 #include "scene/key_table.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/schedule_rows.hpp"
 
 namespace ropewalk {
@@ -79,15 +80,17 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                      "tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
        Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
-                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist),
+                   "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)
+           .of_pace(SceneKey::Pace::course),
        Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
-                   "by which the slice is drawn out from the first of these times on, [[ps, strain], ...]",
-                   read_strain),
+                   "strain of the slice against time, [[ps, strain], ...], from the first of these times on",
+                   read_strain)
+           .of_pace(SceneKey::Pace::course),
        Key::custom(
            "tension_nN", "nN", otherwise("[[0, 0]]", "the slice keeps its length"),
-           "of the rope until the first time of strain, in time; the slice then takes the length that it asks "
-           "for",
-           read_tension)},
+           "tension of the rope against time, until strain begins; until then the length of the slice is free",
+           read_tension)
+           .of_pace(SceneKey::Pace::course)},
       check_slice};
   return table;
 }
@@ -151,7 +154,7 @@ void PeriodicDrive::refuse_start(const Scene& scene, const Topology& topology, c
       if (images.count(e) == 0) continue;
       const int tube = topology.tube_of(e);
       throw InputError(
-          {scene.path, 0, "load.elements"},
+          place_in(scene, "load.elements"),
           fmt::format("element {} of tube {} is an image of the slice, and a load on it has no effect",
                       e - topology.tube_begin[tube], tube),
           topology.strands() < topology.tubes()
@@ -169,7 +172,8 @@ void PeriodicDrive::warn(const Scene&, const Topology& topology, const LoadsAndC
   warnings.push_back(fmt::format(
       "This is a slice of an endless rope: of the {} elements of a {} {} are its own, {:.4g} nm, and "
       "{} at each end "
-      "are images. Energies in eV count the images too; energies per mass, torque and tension are "
+      "are images. Energies in eV and twists from end to end count the images too; energies per mass, torque and "
+      "tension are "
       "those of the rope.",
       all, topology.strands() < topology.tubes() ? "strand" : "tube", own, slice.period(), slice.images));
 }
@@ -236,11 +240,11 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   const int all = topology.elements() / topology.strands();
   out.period_ = topology.groups.period;
   out.reach_ = reach;
-  // Twice what a wave needs along the slice, so that the interior follows.
+  // Twice what a wave needs along the period, so that the interior follows, however many images there are.
   const double twist_wave = std::sqrt(type.bond.twist / (type.inertia / a)),
                stretch_wave = std::sqrt(type.bond.stretch / (type.mass / a));
-  out.schedule_ = Schedule(twist, 2 * all * a / twist_wave);
-  if (!strain.empty()) out.stretched_ = Schedule(strain, 2 * all * a / stretch_wave);
+  out.schedule_ = Schedule(twist, 2 * out.period_ / twist_wave);
+  if (!strain.empty()) out.stretched_ = Schedule(strain, 2 * out.period_ / stretch_wave);
   if (!tension.empty()) out.pulled_ = Schedule(tension);
   for (int first = 0; first < topology.elements(); first += all)
     for (int k = 0; k < out.images; ++k) {

@@ -8,6 +8,7 @@
 #include "scene/end_moment.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 namespace {
@@ -42,13 +43,18 @@ const KeyTable<TwistLoad>& twist_table() {
       {Key::number("moment_nN_nm", unit::nN_nm, Bounds::positive(1e6), &T::moment, required("35"),
                    "moment at the end of the ramp"),
        Key::number(rate_key, {"nN nm/ps", units::nN_nm}, Bounds::non_negative(1e6), &T::rate, required("1"),
-                   "rate of the ramp; 0: the moment acts at once"),
+                   "rate of the ramp; 0: the moment acts at once")
+           .of_pace(SceneKey::Pace::rate),
        Key::number("hold_ps", unit::ps, Bounds::non_negative(longest_time), &T::hold, standard(),
-                   "time under the full moment, after the ramp"),
+                   "time under the full moment, after the ramp")
+           .of_pace(SceneKey::Pace::time),
        Key::number("unload_rate_nN_nm_per_ps", {"nN nm/ps", units::nN_nm}, Bounds::non_negative(1e6),
-                   &T::unload_rate, standard(), "after that the moment is taken away at this rate; 0: it stays"),
+                   &T::unload_rate, standard(),
+                   "rate at which the moment is taken away after the hold; 0: it stays")
+           .of_pace(SceneKey::Pace::rate),
        Key::number("unloaded_ps", unit::ps, Bounds::non_negative(longest_time), &T::unloaded, standard(),
-                   "time without a moment, at the end"),
+                   "time without a moment, at the end")
+           .of_pace(SceneKey::Pace::time),
        Key::word("hand", Words<bool>{{"right", false}, {"left", true}}, &T::left_handed, standard(),
                  "\"left\": the moment at the upper end turns the other way"),
        Key::word("reading", Words<T::Reading>{{"per-tube", T::Reading::per_tube}, {"total", T::Reading::total}},
@@ -61,7 +67,7 @@ const KeyTable<TwistLoad>& twist_table() {
                  "\"held\": the centre of mass of a grip stays on the axis"),
        Key::word("axial", grips, &T::axial_free, standard(), "\"held\": grip elements keep their z"),
        Key::boolean("geometric_only", &T::geometric_only, standard(),
-                    "relax the tubes' own twist at each increment"),
+                    "true: the tubes' own twist is relaxed at each increment"),
        Key::number("increment_ps", unit::ps, Bounds::positive(longest_time), &T::increment, standard(),
                    "time between such relaxations")},
       check_twist};
@@ -162,11 +168,11 @@ std::string TwistDrive::needs_time() const {
 void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, const State&,
                               const LoadsAndConstraints& loads) const {
   if (load.application == TwistLoad::Application::tangential && topology.tubes() == 1)
-    throw InputError({scene.path, 0, "twist.application"},
+    throw InputError(place_in(scene, "twist.application"),
                      "tangential forces about the axis of one tube have no arm", "take \"couple\"");
   for (int t = 0; t < topology.tubes(); ++t)
     if (topology.length_of(t) < 2)
-      throw InputError({scene.path, 0, "twist"}, fmt::format("tube {} has one element and no two grips", t),
+      throw InputError(place_in(scene, "twist"), fmt::format("tube {} has one element and no two grips", t),
                        "take tubes of two elements or more");
   refuse_end_moment(scene, topology, loads, "twist.moment_nN_nm");
 }

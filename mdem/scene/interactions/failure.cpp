@@ -1,7 +1,8 @@
 // [failure] tubes that break: a bond between two elements breaks for good in the first step in which the tube about
 // it is strained, or bends, beyond its limit, or in which the bond itself can carry no more torque.
 //
-//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90 degrees
+//   strain of n bonds about it > strain,   or   bending moment over n bonds > moment,   or   twist of it >= 90
+//   degrees
 //
 // n bonds are about as long as the tube is wide, one where elements are as long as that. So heat, which strains a
 // bond the more the shorter it is, weakens a tube in short elements no more than in long ones. `from = "atoms"`
@@ -32,6 +33,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
+#include "scene/spacing.hpp"
 #include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
@@ -269,9 +271,8 @@ const KeyTable<FailureDrive>& failure_table() {
       {Key::number(
            "strain", unit::none, Bounds::range(0.001, 1), [](auto& d) -> auto& { return d.law.strain; },
            otherwise("0.16", "required but for from and moment_nN_nm"),
-           "of a tube, at which it breaks: 0.16 of defect-free tubes (DOI 10.1103/PhysRevB.65.235430), 0.02 to "
-           "0.12 "
-           "in experiments (DOI 10.1126/science.287.5453.637)"),
+           "strain at which a tube breaks: 0.16 without defects (DOI 10.1103/PhysRevB.65.235430), 0.02 to 0.12 in "
+           "experiments (DOI 10.1126/science.287.5453.637)"),
        Key::word(
            "from", Words<bool>{{"atoms", true}}, [](auto& d) -> auto& { return d.law.from_atoms; },
            otherwise("\"atoms\"", "a strain of your own"),
@@ -288,7 +289,7 @@ const KeyTable<FailureDrive>& failure_table() {
            otherwise("15", "never"), "bending moment at which a bond breaks too"),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
-           "of the scatter")},
+           "seed of the scatter")},
       [](const TomlTable& t, const Scene& scene, FailureDrive& failure) {
         if (!t.has("strain") && !t.has("from") && !t.has("moment_nN_nm"))
           throw t.error("strain", "is missing", "write one, or from = \"atoms\", or moment_nN_nm");
@@ -300,7 +301,7 @@ const KeyTable<FailureDrive>& failure_table() {
           throw t.error("strain_deviation", "stands without strain", "give the mean strain too");
         refuse_beyond_data(t, scene, failure.law);
         if (!t.has("seed")) failure.law.seed = scene.start.seed;
-        if (!(failure.law.reference > 0)) failure.law.reference = scene.parameters().element_length;
+        if (!(failure.law.reference > 0)) failure.law.reference = own_element_length(scene);
         if (failure.law.deviation > 0.34 * failure.law.strain)
           throw t.error("strain_deviation", "is more than a third of strain: some bonds would break at rest",
                         fmt::format("take at most {:.2g}", failure.law.strain / 3));

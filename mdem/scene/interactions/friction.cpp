@@ -158,11 +158,10 @@ const KeyTable<FrictionDrive>& friction_table() {
       "friction",
       "any number of these: dry friction of tubes side by side; slips are elastic up to a strength, then tubes "
       "slide",
-      {Key::custom(
-           "from", "", otherwise("\"atoms\"", "typed below"),
-           "strengths that were measured from atoms: \"atoms\" for all pairs of tubes, or the name of a shipped "
-           "pair, or a file",
-           read_from),
+      {Key::custom("from", "", otherwise("\"atoms\"", "typed below"),
+                   "where measured strengths come from: \"atoms\" for all pairs of tubes, or the name of a shipped "
+                   "pair, or a file",
+                   read_from),
        Key::number(
            "strength_pN_per_nm", per_length, Bounds::non_negative(1e5),
            [](auto& d) -> auto& { return d.typed.axial; }, standard(),
@@ -187,8 +186,8 @@ const KeyTable<FrictionDrive>& friction_table() {
            "slip", Words<bool>{{"dry", false}, {"corrugation", true}},
            [](auto& d) -> auto& { return d.typed.corrugated; },
            otherwise("\"dry\"", "\"corrugation\" for strengths of atoms"),
-           "beyond its strength a contact slides and loses the work, \"dry\"; or its force is that of a "
-           "\"corrugation\", which loses nothing"),
+           "\"dry\": beyond its strength a contact slides and loses the work; \"corrugation\": its force is "
+           "periodic and loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types between which it acts, from 0; this pair is then this table's alone",
                    read_types)},

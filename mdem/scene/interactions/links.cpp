@@ -23,7 +23,8 @@ class LinksDrive : public Drive {
  public:
   LinkLaw law;
   std::vector<int> between;  // tube, element, to tube, to element, ...
-  std::string path;          // of the scene
+  InputError::Place place;
+  int between_line = 0;
 
   SceneTable table() const override;
   std::string words() const override;
@@ -49,7 +50,7 @@ class LinksDrive : public Drive {
       return;
     if (!at_start(topology, state).empty()) return;
     throw InputError(
-        {path, 0, "links"},
+        place,
         fmt::format(
             "none is placed: no two tubes that they join face each other within {:.3g} nm between their walls, or "
             "the number per length is so small that chance gave none",
@@ -82,16 +83,17 @@ class LinksDrive : public Drive {
                                              0.5 * of_b.element_length)) -
           of_a.radius - of_b.radius;
       if (apart > law.reach)
-        throw InputError({path, 0, "links.between"},
+        throw InputError(between_place(),
                          fmt::format("links elements {} and {} whose walls are {:.3g} nm apart", a, b, apart),
                          fmt::format("name elements that touch, or raise reach_nm above {:.3g}", law.reach));
     }
     return placed_links(law, topology, state, pairs(topology));
   }
+  InputError::Place between_place() const { return {place.file, between_line, "links.between"}; }
   std::vector<std::pair<int, int>> pairs(const Topology& topology) const {
     std::vector<std::pair<int, int>> all;
     for (std::size_t k = 0; k + 3 < between.size(); k += 4) {
-      const InputError::Place place = {path, 0, "links.between"};
+      const InputError::Place place = between_place();
       const int a = element_of_tube(topology, between[k], between[k + 1], place),
                 b = element_of_tube(topology, between[k + 2], between[k + 3], place);
       if (between[k] == between[k + 2])
@@ -137,7 +139,8 @@ void read_linked_types(const TomlTable& t, const Scene& scene, LinksDrive& links
 
 void check_links(const TomlTable& t, const Scene& scene, LinksDrive& links) {
   LinkLaw& law = links.law;
-  links.path = scene.path;
+  links.place = {scene.path, t.line(), "links"};
+  links.between_line = t.line("between");
   // Each table has places of its own.
   const auto before = static_cast<std::uint64_t>(scene.drives_of<LinksDrive>().size());
   if (!t.has("seed")) law.seed = scene.start.seed + (before << 32);
@@ -173,11 +176,12 @@ const KeyTable<LinksDrive>& links_table() {
            otherwise("0.1", "0"), "links per length of contact of two tubes at the start, at random places"),
        Key::integer(
            "at_ends", 0, 100, [](auto& d) -> auto& { return d.law.at_ends; }, standard(),
-           "links of each end of a tube with tubes beside it"),
+           "number of links from each end of a tube to the tubes beside it"),
        Key::number(
            "placed_at_ps", unit::ps, Bounds::non_negative(longest_time),
            [](auto& d) -> auto& { return d.law.placed_at; }, standard(),
-           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun"),
+           "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun")
+           .of_pace(SceneKey::Pace::time),
        Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
                    "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
                    "elements from the end",
@@ -208,13 +212,13 @@ const KeyTable<LinksDrive>& links_table() {
        Key::number(
            "most_per_nm", per_nm, Bounds::positive(100), [](auto& d) -> auto& { return d.law.most; },
            otherwise("1", "required by forming_per_nm_ps"),
-           "links of this table per length of a tube beyond which none form"),
+           "largest number of links of this table per length of tube; beyond it no more form"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
                    "the two tube types that they join, from 0; this pair is then this table's alone",
                    read_linked_types),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),
-           "of the random places")},
+           "seed of the random places")},
       check_links};
   return table;
 }

@@ -14,8 +14,8 @@
 
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
-#include "scene/key_table.hpp"
 #include "scene/drive_kind.hpp"
+#include "scene/key_table.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/force_term.hpp"
 #include "sim/state/part_of_scene.hpp"
@@ -29,9 +29,9 @@ constexpr int elsewhere = -1;
 // --- the term -----------------------------------------------------------------------------------------
 
 struct TetherEnd {
-  std::vector<int> elements;        // of the scene; none: a fixed point
+  std::vector<int> elements;         // of the scene; none: a fixed point
   Vector3 centre = Vector3::Zero();  // nm
-  std::vector<int> own;             // the elements of this process, by their places in its state
+  std::vector<int> own;              // the elements of this process, by their places in its state
 };
 
 class Tether : public ForceTerm {
@@ -65,7 +65,8 @@ class Tether : public ForceTerm {
     double sums[6] = {};
     for (int e = 0; e < 2; ++e)
       for (const int i : ends_[e].own)
-        for (int axis = 0; axis < 3; ++axis) sums[3 * e + axis] += state.position[static_cast<std::size_t>(i)][axis];
+        for (int axis = 0; axis < 3; ++axis)
+          sums[3 * e + axis] += state.position[static_cast<std::size_t>(i)][axis];
     if (others_) others_->sum(sums, 6);
     for (int e = 0; e < 2; ++e)
       if (!ends_[e].elements.empty())
@@ -85,7 +86,8 @@ class Tether : public ForceTerm {
     const auto within = [&](int i) { return part.begin <= i && i < part.end; };
     for (int e = 0; e < 2; ++e)
       for (const int i : ends_[e].own)
-        if (within(i)) out.force.add(static_cast<std::size_t>(i - out.origin), (e == 0 ? 1 : -1) / count(ends_[e]) * pull);
+        if (within(i))
+          out.force.add(static_cast<std::size_t>(i - out.origin), (e == 0 ? 1 : -1) / count(ends_[e]) * pull);
     return {within(first_) ? stored() : 0, 0};
   }
 
@@ -93,7 +95,8 @@ class Tether : public ForceTerm {
     const double d = distance();
     if (broken_ || away_ || !(d > 0)) return true;
     const Vector3 along = (ends_[1].centre - ends_[0].centre) / d;
-    const Eigen::Matrix3d pull = k_ * ((1 - rest_ / d) * Eigen::Matrix3d::Identity() + rest_ / d * along * along.transpose());
+    const Eigen::Matrix3d pull =
+        k_ * ((1 - rest_ / d) * Eigen::Matrix3d::Identity() + rest_ / d * along * along.transpose());
     for (int e = 0; e < 2; ++e)
       for (int f = 0; f < 2; ++f)
         for (const int i : ends_[e].own)
@@ -136,8 +139,8 @@ class Tether : public ForceTerm {
   double k_, rest_, breaks_at_;    // eV/nm^2, nm, nm
   bool rests_as_it_starts_ = false;
   bool broken_ = false;
-  int first_ = 0;         // place of its first element, to which energy and memory belong
-  bool away_ = false;     // another process has all of it
+  int first_ = 0;                      // place of its first element, to which energy and memory belong
+  bool away_ = false;                  // another process has all of it
   const Processes* others_ = nullptr;  // that have some of its elements
 };
 
@@ -154,13 +157,15 @@ class TetherDrive : public Drive {
  public:
   TypedEnd from, to;
   double k = 0, rest = at_the_start, breaks_at = never;
-  std::string path;  // of the scene
+  InputError::Place place;
 
   SceneTable table() const override;
   std::string words() const override {
     const auto end = [](const TypedEnd& e) {
-      if (e.elements.empty()) return fmt::format("the point {:.4g}, {:.4g}, {:.4g} nm", e.point.x(), e.point.y(), e.point.z());
-      return fmt::format("tube {}, element{} {}", e.tube, e.elements.size() > 1 ? "s" : "", fmt::join(e.elements, ", "));
+      if (e.elements.empty())
+        return fmt::format("the point {:.4g}, {:.4g}, {:.4g} nm", e.point.x(), e.point.y(), e.point.z());
+      return fmt::format("tube {}, element{} {}", e.tube, e.elements.size() > 1 ? "s" : "",
+                         fmt::join(e.elements, ", "));
     };
     return fmt::format("tether: {} to {}, {:.4g} nN/nm, at rest {}{}", end(from), end(to), k / units::nN_nm,
                        rest == at_the_start ? "as it starts" : fmt::format("at {:.4g} nm", rest),
@@ -172,8 +177,10 @@ class TetherDrive : public Drive {
       throw top.error("tether", "does not go with [periodic]: the images of the slice have no tethers",
                       "take one of the two away");
   }
-  void add_terms(const Scene&, const Topology& topology, const State& /*start*/, Interaction& interaction) const override {
-    add_term(std::make_shared<Tether>(std::array<TetherEnd, 2>{on(topology, from), on(topology, to)}, k, rest, breaks_at),
+  void add_terms(const Scene&, const Topology& topology, const State& /*start*/,
+                 Interaction& interaction) const override {
+    add_term(std::make_shared<Tether>(std::array<TetherEnd, 2>{on(topology, from), on(topology, to)}, k, rest,
+                                      breaks_at),
              interaction);
   }
   std::string why_not_lengthened() const override { return "a tether names elements by number"; }
@@ -184,8 +191,7 @@ class TetherDrive : public Drive {
   TetherEnd on(const Topology& topology, const TypedEnd& typed) const {
     TetherEnd end;
     end.centre = typed.point;
-    for (const int e : typed.elements)
-      end.elements.push_back(element_of_tube(topology, typed.tube, e, {path, 0, "tether"}));
+    for (const int e : typed.elements) end.elements.push_back(element_of_tube(topology, typed.tube, e, place));
     return end;
   }
 };
@@ -212,14 +218,15 @@ void read_point(const TomlTable& t, const Scene&, TetherDrive& tether) {
 
 void check_ends(const TomlTable& t, const Scene& scene, TetherDrive& tether) {
   if (t.has("to_point_nm") == t.has("to_elements"))
-    throw t.error("to_point_nm", t.has("to_point_nm") ? "stands beside to_elements: a tether has two ends" : "is missing",
+    throw t.error("to_point_nm",
+                  t.has("to_point_nm") ? "stands beside to_elements: a tether has two ends" : "is missing",
                   "give to_point_nm, or to_tube and to_elements");
   if (t.has("to_tube") && !t.has("to_elements"))
     throw t.error("to_tube", "has no to_elements", "say which elements of that tube the tether holds");
   if (tether.breaks_at <= tether.rest)
     throw t.error("breaks_at_nm", fmt::format("is {:.4g} and not above rest_nm", tether.breaks_at),
                   "a tether breaks when it is stretched; raise it");
-  tether.path = scene.path;
+  tether.place = {scene.path, t.line(), "tether"};
   tether.without_contact = scene.contact.law == "none";
 }
 
@@ -231,21 +238,26 @@ const KeyTable<TetherDrive>& tether_table() {
   static const KeyTable<TetherDrive> table = {
       "tether",
       "any number of these: elastic tethers between elements",
-      {tube("tube", [](auto& d) -> auto& { return d.from.tube; }, required("0"), "tube of its first end, from 0"),
-       Key::custom("elements", "", required("[-1]"), "elements of that tube whose centre it holds, negative from the end",
+      {tube(
+           "tube", [](auto& d) -> auto& { return d.from.tube; }, required("0"), "tube of its first end, from 0"),
+       Key::custom("elements", "", required("[-1]"),
+                   "elements of that tube whose centre it holds, negative from the end",
                    elements_of("elements", &TetherDrive::from))
            .that_numbers_elements(),
-       tube("to_tube", [](auto& d) -> auto& { return d.to.tube; }, otherwise("1", "0"), "tube of its other end"),
+       tube(
+           "to_tube", [](auto& d) -> auto& { return d.to.tube; }, otherwise("1", "0"), "tube of its other end"),
        Key::custom("to_elements", "", otherwise("[-1]", "to_point_nm"), "elements of that tube",
                    elements_of("to_elements", &TetherDrive::to))
            .that_numbers_elements(),
-       Key::custom("to_point_nm", "nm", otherwise("[0, 0, 20]", "to_elements"), "or a point to which it is tied", read_point),
-       Key::number("stiffness_nN_per_nm", {"nN/nm", units::nN_nm}, Bounds::positive(1e4), &TetherDrive::k, required("0.1"),
-                   "pull per stretch of the tether"),
-       Key::number("rest_nm", unit::nm, Bounds::non_negative(1e6), &TetherDrive::rest, otherwise("5", "as it starts"),
-                   "length without force; shorter, it pushes"),
-       Key::number("breaks_at_nm", unit::nm, Bounds::positive(1e6), &TetherDrive::breaks_at, otherwise("8", "never"),
-                   "length beyond which it breaks for good")},
+       Key::custom("to_point_nm", "nm", otherwise("[0, 0, 20]", "to_elements"), "or a point to which it is tied",
+                   read_point),
+       Key::number("stiffness_nN_per_nm", {"nN/nm", units::nN_nm}, Bounds::positive(1e4), &TetherDrive::k,
+                   required("0.1"), "pull per stretch of the tether"),
+       Key::number("rest_nm", unit::nm, Bounds::non_negative(1e6), &TetherDrive::rest,
+                   otherwise("5", "as it starts"),
+                   "length at which the tether has no force; below it, the tether pushes"),
+       Key::number("breaks_at_nm", unit::nm, Bounds::positive(1e6), &TetherDrive::breaks_at,
+                   otherwise("8", "never"), "length beyond which it breaks for good")},
       check_ends};
   return table;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "scene/bounds.hpp"
 #include "scene/lattice.hpp"
@@ -221,10 +222,16 @@ void FilmSource::place(const Scene& scene, double, Random& random, Topology& top
   put_tubes(laid, elements, a, topology, state);
 }
 
-std::string FilmSource::description(const Topology&, const State& state, double) const {
-  const auto& z = state.position.z;
-  return fmt::format("a film of {:.4g} nm between its lowest and highest axis",
-                     *std::max_element(z.begin(), z.end()) - *std::min_element(z.begin(), z.end()));
+std::string FilmSource::description(const Topology& topology, const State& state, double) const {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (int i = 0; i < topology.elements(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double half =
+        0.5 * topology.type_of_element(i).element_length * std::fabs(axis_of(state.orientation[k]).z());
+    lowest = std::min(lowest, state.position.z[k] - half);
+    highest = std::max(highest, state.position.z[k] + half);
+  }
+  return fmt::format("a film of {:.4g} nm between its lowest and highest axis", highest - lowest);
 }
 
 }  // namespace ropewalk

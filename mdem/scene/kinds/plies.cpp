@@ -255,7 +255,7 @@ SceneKind plies_kind() {
       {"plies",
        "instead of [rope]: equal ropes that touch, side by side or wound round one another about z",
        {Key::integer("ropes", 1, most_ropes, &PliesSource::ropes, required("2"),
-                     "in a ring about the axis, 2 to 6"),
+                     "number of ropes, 2 to 6, in a ring about the axis"),
         Key::integer("tubes", 1, max_elements, rope(&RopeSource::tubes), required("7"),
                      "of each rope, as in [rope]"),
         Key::word("packing", Words<Packing>{{"hexagonal", Packing::hexagonal}, {"round", Packing::round}},

@@ -40,28 +40,19 @@ void read_places(const TomlTable& t, const Scene&, RopeSource& rope) {
     rope.typed_places.emplace_back(row[0], row[1]);
 }
 
-// Places of which two tubes would lie within each other, or of another number than there are tubes.
-void check_places(const TomlTable& t, const Scene& scene, const RopeSource& rope) {
+// Whether tubes overlap or lie inside of one another is for prepare() to see, which knows the type of each.
+void check_places(const TomlTable& t, const RopeSource& rope) {
   const auto& places = rope.typed_places;
   if (places.empty()) return;
   if (t.has("packing")) throw t.error("places_nm", "stands beside packing", "take one of the two away");
   if (places.size() != static_cast<std::size_t>(rope.tubes))
     throw t.error("places_nm", fmt::format("has {} places, and the rope has {} tubes", places.size(), rope.tubes),
                   fmt::format("write tubes = {}", places.size()));
-  double least = scene.sets.front().radius;
-  for (const ParameterSet& set : scene.sets) least = std::min(least, set.radius);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const double apart = std::hypot(places[i].first - places[j].first, places[i].second - places[j].second);
-      if (apart < 2 * least)
-        throw t.error("places_nm", fmt::format("has the tubes {} and {} {:.3g} nm apart", j, i, apart),
-                      fmt::format("their walls would cross below {:.3g} nm", 2 * least));
-    }
 }
 
 void check_rope(const TomlTable& t, const Scene& scene, RopeSource& rope) {
   check_rope_size(t, scene, rope, 1);
-  check_places(t, scene, rope);
+  check_places(t, rope);
   const double least = least_elements * scene.element_length;
   const std::pair<const char*, bool> of_ends[] = {{"tube_length_deviation_nm", rope.deviation > 0},
                                                   {"gap_nm", rope.gap > 0},
@@ -93,16 +84,16 @@ SceneKind rope_kind() {
       {"rope",
        "parallel tubes along z, centred on the origin",
        {Key::integer("tubes", 1, max_elements, &RopeSource::tubes, required("91"),
-                     "in a cross-section: a hexagonal number 1, 7, 19, 37, 61, 91, 127, 169, 217, ..."),
-        Key::word(
-            "packing",
-            Words<RopeSource::Packing>{{"hexagonal", RopeSource::Packing::hexagonal},
-                                       {"round", RopeSource::Packing::round},
-                                       {"random", RopeSource::Packing::random}},
-            &RopeSource::packing, standard(),
-            "full shells of the lattice; \"round\": any number of tubes on the places nearest to the axis; "
-            "\"random\": at places drawn at random, then together until they touch, as tubes of several types are "
-            "in any packing"),
+                     "number of tubes in a cross-section; by default a hexagonal one: 1, 7, 19, 37, 61, 91, 127, "
+                     "169, 217, ..."),
+        Key::word("packing",
+                  Words<RopeSource::Packing>{{"hexagonal", RopeSource::Packing::hexagonal},
+                                             {"round", RopeSource::Packing::round},
+                                             {"random", RopeSource::Packing::random}},
+                  &RopeSource::packing, standard(),
+                  "\"hexagonal\": full shells of the lattice; \"round\": any number of tubes, on the places "
+                  "nearest to the axis; \"random\": tubes begin at random places and move together until they "
+                  "touch, as those of several types do in any packing"),
         Key::custom("places_nm", "nm", otherwise("[[0, 0], [1.7, 0]]", "by packing"),
                     "x and y of each tube in the cross-section, where they stay", read_places),
         Key::number("length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::length, required("67.8"),
@@ -110,10 +101,9 @@ SceneKind rope_kind() {
             .is_tube_size(SceneKey::TubeSize::length),
         Key::number("spacing_nm", unit::nm, spacing_bounds, &RopeSource::spacing,
                     otherwise("1.713", "where two tubes bind best"), "distance between tube axes"),
-        Key::number(
-            "perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
-            "each element is displaced at random by up to this in x and y; elements of another length than the "
-            "set's own by more or less, so that long waves stay"),
+        Key::number("perturbation_nm", unit::nm, Bounds::non_negative(0.1), &RopeSource::perturbation, standard(),
+                    "largest random displacement of an element in x and in y; for elements of another length than "
+                    "the set's own it is scaled, so that long waves stay the same"),
         Key::number(
             "tube_length_nm", unit::nm, Bounds::positive(1e9), &RopeSource::tube_length,
             otherwise("20", "length_nm"),
@@ -129,8 +119,8 @@ SceneKind rope_kind() {
             "ends of neighbouring tubes: \"none\" at one height, \"brick\" a third of a tube apart, \"random\""),
         Key::number("gap_nm", unit::nm, Bounds::positive(10), &RopeSource::gap,
                     otherwise("0.25", "where the ends rest"),
-                    "least hole between the walls of two tubes in line; holes grow until all strands have as many "
-                    "elements")},
+                    "least hole between the walls of two tubes in line; holes are wider in strands with fewer "
+                    "ends, so that all have the same number of elements")},
        check_rope});
 }
 
@@ -180,7 +170,7 @@ void RopeSource::place(const Scene& scene, double spacing_of_tubes, Random& rand
                        scene.element_length, topology, state);
   // The same in all waves that the elements can show, whatever their length.
   if (perturbation > 0)
-    displace(perturbation * std::sqrt(scene.parameters().element_length / scene.element_length), random, state);
+    displace(perturbation * std::sqrt(own_element_length(scene) / scene.element_length), random, state);
 }
 
 std::string RopeSource::description(const Topology& t, const State&, double spacing_of_tubes) const {

@@ -41,7 +41,6 @@ class RopeSource : public Source {
     return typed_places.empty() && (unlike || packing == Packing::random);
   }
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
-  std::string not_for_lammps() const override { return tube_length > 0 ? "rope.tube_length_nm" : ""; }
 
   // Of the strands in a cross-section (nm), about its middle. `seed`: of random ones.
   std::vector<std::pair<double, double>> places(double spacing_of_tubes, std::uint64_t seed = 1) const;

@@ -7,6 +7,7 @@
 #include "scene/kinds/rope.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 #include "scene/spacing.hpp"
 
 namespace ropewalk {
@@ -44,7 +45,7 @@ double RopeSource::least_gap(const Scene& scene) const {
   const double rests = coaxial_gap(scene), least = gap > 0 ? gap : rests;
   if (least < rests - hardest_push)
     throw InputError(
-        {scene.path, 0, "rope.gap_nm"},
+        place_in(scene, "rope.gap_nm"),
         fmt::format("is {:.4g} nm, and ends of tubes rest {:.4g} nm apart by this contact law: they would be "
                     "driven into one another",
                     least, rests),
@@ -140,14 +141,14 @@ void RopeSource::place_slice(const Scene& scene, double spacing_of_tubes, Random
   const int own = whole_elements(length - in_line * hole, a) - 2 * images;
   if (own < std::max(images, in_line * (least_elements + 1)))
     throw InputError(
-        {scene.path, 0, "rope.length_nm"},
+        place_in(scene, "rope.length_nm"),
         fmt::format("leaves {} elements between {} images at each end of the slice", std::max(0, own), images),
         fmt::format("make the tubes at least {:.4g} nm long",
                     (std::max(images, in_line * (least_elements + 1)) + 2 * images) * a + in_line * hole));
   topology.groups.period = own * a + in_line * hole;
   if (cut && tube_length > topology.groups.period)
     throw InputError(
-        {scene.path, 0, "rope.tube_length_nm"},
+        place_in(scene, "rope.tube_length_nm"),
         fmt::format("is {:.4g} nm, and the slice repeats itself after {:.4g} nm: a tube would go on "
                     "beside its own image",
                     tube_length, topology.groups.period),

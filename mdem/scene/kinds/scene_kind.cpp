@@ -6,7 +6,7 @@
 #include <cassert>
 
 #include "scene/bounds.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 #include "scene/scene.hpp"
 #include "scene/spacing.hpp"
 

@@ -16,15 +16,14 @@ SceneKind state_kind() {
       {"state",
        "instead of [rope]: elements from a CSV file tube,x_nm,y_nm,z_nm,qw,qx,qy,qz, such as the final.csv of a "
        "run",
-       {Key::custom("file", "", required("\"state.csv\""), "looked for beside the scene", read_file)},
+       {Key::custom("file", "", required("\"state.csv\""), "name of the file, which is looked for beside the scene",
+                    read_file)},
        {}});
 }
 
-// LAMMPS gets tubes without their strands, and loads would hold the ends inside.
 std::string StateSource::not_for_lammps() const {
   if (!std::filesystem::exists(path_)) return "";
-  if (!read_state_notes(path_).broken.empty()) return "state.file with broken tubes";
-  return state_has_strands(path_) ? "state.file with strands" : "";
+  return read_state_notes(path_).broken.empty() ? "" : "state.file with broken tubes";
 }
 
 void StateSource::place(const Scene&, double, Random&, Topology& topology, State& state) const {

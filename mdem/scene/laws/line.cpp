@@ -17,9 +17,11 @@ std::vector<LineDensity> line_densities(const Scene& scene) {
   std::vector<LineDensity> out;
   for (const ParameterSet& i : scene.sets)
     for (const ParameterSet& j : scene.sets) {
-      out.push_back(&i == &j ? i.line->density
-                             : i.line->universal.density(i.radius, i.line->surface_density, j.radius,
-                                                         j.line->surface_density));
+      // One set that is named twice is one kind of tube.
+      out.push_back(
+          &i == &j || (!i.hash.empty() && i.hash == j.hash)
+              ? i.line->density
+              : i.line->universal.density(i.radius, i.line->surface_density, j.radius, j.line->surface_density));
       if (scene.contact.cutoff > 0) out.back() = with_cutoff(out.back(), scene.contact.cutoff);
     }
   return out;

@@ -9,6 +9,7 @@
 #include "scene/drive_kind.hpp"
 #include "scene/end_moment.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_place.hpp"
 
 namespace ropewalk {
 
@@ -126,6 +127,19 @@ bool Selection::has_tube(int tube) const {
   return all_tubes || std::find(tubes.begin(), tubes.end(), tube) != tubes.end();
 }
 
+namespace {
+
+InputError::Place place_of(const Scene& scene, const Selection& on, const char* key) {
+  int k = 0;
+  for (const LoadDrive* load : scene.drives_of<LoadDrive>()) {
+    if (&load->on == &on) return place_in(scene, std::string("load.") + key, k);
+    ++k;
+  }
+  return place_in(scene, std::string("grip.") + key);
+}
+
+}  // namespace
+
 std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const Topology& topology) {
   std::vector<int> tubes;
   if (on.all_tubes) {
@@ -134,7 +148,7 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
   }
   for (int t : on.tubes) {
     if (t < 0 || t >= topology.tubes())
-      throw InputError({scene.path, 0, "load.tubes"}, fmt::format("there is no tube {}", t),
+      throw InputError(place_of(scene, on, "tubes"), fmt::format("there is no tube {}", t),
                        fmt::format("tubes are numbered from 0 to {}", topology.tubes() - 1));
     tubes.push_back(t);
   }
@@ -245,7 +259,7 @@ std::vector<int> selected_elements(const Scene& scene, const Selection& on, cons
     for (int e : on.elements) {
       const int at = e < 0 ? length + e : e;
       if (at < 0 || at >= length)
-        throw InputError({scene.path, 0, "load.elements"}, fmt::format("tube {} has no element {}", t, e),
+        throw InputError(place_of(scene, on, "elements"), fmt::format("tube {} has no element {}", t, e),
                          fmt::format("its elements are 0 to {}, or -1 to -{} from the end", length - 1, length));
       elements.push_back(topology.tube_begin[t] + at);
     }

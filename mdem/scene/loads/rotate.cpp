@@ -26,7 +26,8 @@ LoadKind rotate_kind() {
       {"rotate",
        "",
        {Key::number("rate_deg_per_ps", {"deg/ps", units::degree}, Bounds::range(-360, 360), &R::rate, required("1"),
-                    "speed of the prescribed rotation about z, negative: left-handed"),
+                    "speed of the prescribed rotation about z, negative: left-handed")
+            .of_pace(SceneKey::Pace::rate),
         Key::number("angle_deg", unit::degree, Bounds::positive(1e6), &R::angle, required("360"), "where it stops"),
         Key::custom("centre_nm", "nm", standard("[0, 0]"), "x and y of the axis", read_centre),
         Key::boolean("axial_free", &R::axial_free, standard(), "z is free"),

@@ -110,9 +110,12 @@ const KeyTable<ContactOptions>& contact_table() {
        Key::boolean("legacy_torque", &C::legacy_torque, standard(),
                     "leave out the torque that the published code leaves out; gains energy, for comparison only"),
        Key::custom("cutoff_nm", "nm", otherwise("2.5", "the set's"),
-                   "line: of tube axes, paper: of element centres; shorter is faster and binds less", read_cutoff),
+                   "cutoff distance, of tube axes (line) or of element centres (paper); a shorter one is faster "
+                   "and binds less",
+                   read_cutoff),
        Key::custom(exclusion_key, "nm", otherwise("6", "the reach of the contact along a bent tube"),
-                   "parts of one tube up to this far apart along it do not attract", read_exclusion),
+                   "two parts of one tube attract each other only if they are farther apart along it than this",
+                   read_exclusion),
        Key::number("skin_nm", unit::nm, Bounds::positive(5), &C::skin, otherwise("0.15", "chosen by the program"),
                    "margin of the neighbour list; speed only")},
       check_contact};

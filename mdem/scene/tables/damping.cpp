@@ -25,15 +25,21 @@ Damping defaults() {
 }
 
 void complete(const TomlTable& t, const Scene& scene, Damping& d) {
-  const ParameterSet& set = scene.parameters();
-  const double longer = scene.element_length / set.element_length, squared = longer * longer;
+  // Means over the sets, in whatever order the scene lists them.
+  const auto count = static_cast<double>(scene.sets.size());
+  double squared = 0, rate = 0;
+  for (const ParameterSet& set : scene.sets) {
+    const double longer = scene.element_length / set.element_length;
+    squared += longer * longer / count;
+    rate += d.bond.rate / (longer * longer) / count;
+  }
   // Not asked for where it is not there: no misspelt key shall be taken for this one.
   const bool typed_per_pair = std::binary_search(t.keys().begin(), t.keys().end(), per_pair);
   if (typed_per_pair && t.has(per_length))
     throw t.error(per_pair, fmt::format("and {} are both given", per_length), "take this one away");
   d.contact.eta = typed_per_pair ? squared * t.number(per_pair, viscosities())
-                                 : contact_viscosity(d.contact.eta, scene.element_length, set.radius);
-  d.bond.rate /= squared;
+                                 : contact_viscosity(d.contact.eta, scene.element_length, scene.sets);
+  d.bond.rate = rate;
 }
 
 }  // namespace

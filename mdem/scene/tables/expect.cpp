@@ -31,17 +31,24 @@ const KeyTable<Expectation>& expect_table() {
   static const KeyTable<Expectation> table = {
       "expect",
       "any number of these: what the run should give; a run that misses one ends with exit code 8",
-      {Key::custom("column", "", required("\"geometric_twist_deg\""), "of log.csv",
+      {Key::custom("column", "", required("\"geometric_twist_deg\""), "a column of log.csv",
                    [](const TomlTable& t, const Scene&, Expectation& e) { e.column = t.string("column"); }),
        Key::custom("at_ps", "ps", otherwise("100", "the end of the run"),
-                   "the time; between two rows the value follows the line through both", read_at),
+                   "time at which the value is judged; between two rows it follows the line through both", read_at)
+           .of_pace(SceneKey::Pace::time),
        Key::custom(
            "value", "", required("162.4"), "in the unit of the column",
            [](const TomlTable& t, const Scene&, Expectation& e) { e.value = t.number("value", Bounds::any()); }),
        Key::custom("tolerance", "", otherwise("0.5", "tolerance_percent"),
                    "the value may be off by so much, in the unit of the column", read_tolerance),
-       Key::custom("tolerance_percent", "%", otherwise("1", "tolerance"), "the same as a part of the value",
-                   [](const TomlTable&, const Scene&, Expectation&) {})},
+       Key::custom("tolerance_percent", "%", otherwise("1", "tolerance"), "the same, in per cent of the value",
+                   [](const TomlTable&, const Scene&, Expectation&) {}),
+       Key::custom(
+           "scene_hash", "", otherwise("\"0123456789abcdef\"", "any"),
+           "hash of the scene for which it holds, as `check` prints it; a changed scene is not judged by it",
+           [](const TomlTable& t, const Scene&, Expectation& e) {
+             if (t.has("scene_hash")) e.scene_hash = t.string("scene_hash");
+           })},
       {},
       Expectation(),
       true};

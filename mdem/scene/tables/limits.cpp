@@ -16,11 +16,11 @@ const std::array<Text, limit_count>& texts() {
       {otherwise("0.086", "the set's"), "curvature of a tube"},
       {otherwise("0.043", "the set's, for tubes of this length"), "radius of a tube times its twist per length"},
       {otherwise("0.069", "tension: the end of the set's pull, else its stretch; compression: its stretch"),
-       "of a bond, tension or compression"},
+       "strain of a bond, in tension or compression"},
       {otherwise("0.11", "down to the core gap of the law"), "how much nearer than at rest tubes are pressed"},
-      {otherwise("2", "a tenth of the speed of sound along the tube"), "of an element"},
-      {otherwise("2.3", "where a tube of this diameter collapses"), "of the contacts across a tube"},
-      {standard("0.05"), "error of the account of energy over the energy that has moved"},
+      {otherwise("2", "a tenth of the speed of sound along the tube"), "speed of an element"},
+      {otherwise("2.3", "where a tube of this diameter collapses"), "pressure of the contacts on a tube"},
+      {standard("0.05"), "error of the energy balance over the energy that has moved"},
       {standard("0.25"), "kinetic energy of a cold rope over its energy of twist under the whole moment"},
   }};
   return all;

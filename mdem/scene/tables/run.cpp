@@ -67,15 +67,18 @@ const KeyTable<RunOptions>& run_table() {
                    "speed grow by it and at a given temperature stay; statics stay"),
        Key::number("duration_ps", unit::ps, time, &R::duration,
                    otherwise("100", "until [twist] and all grips have done what they do"),
-                   "dynamics: simulated time"),
+                   "dynamics: simulated time")
+           .of_pace(SceneKey::Pace::time),
        Key::number("frames_every_ps", unit::ps, time, &R::frames_every, otherwise("1", "40 frames"),
-                   "time between stored frames"),
+                   "time between stored frames")
+           .of_pace(SceneKey::Pace::time),
        Key::word("frames_format", Words<FrameFormat>{{"gsd", FrameFormat::gsd}, {"lammpstrj", FrameFormat::dump}},
                  &R::frames_format, standard(),
                  "\"gsd\": binary, for OVITO and MDAnalysis; \"lammpstrj\": text, for LAMMPS and ASE as well, four "
                  "times as large"),
        Key::number("log_every_ps", unit::ps, time, &R::log_every, otherwise("0.1", "400 rows"),
-                   "time between rows of the log"),
+                   "time between rows of the log")
+           .of_pace(SceneKey::Pace::time),
        Key::number("checkpoint_every_s", unit::seconds, Bounds::positive(1e6), &R::checkpoint_every, standard(),
                    "wall time between checkpoints"),
        Key::number(
@@ -84,7 +87,9 @@ const KeyTable<RunOptions>& run_table() {
            "relax: done when no force, and no torque over the radius of its tube, is larger"),
        Key::number(
            "energy_tolerance", unit::none, Bounds::range(1e-9, 1), [](auto& r) -> auto& { return r.goal.energy; },
-           standard(), "relax: and the bonds' energy is within this part of the minimum's, by estimate"),
+           standard(),
+           "relax: done when, in addition, the energy of the bonds is estimated to be within this part of that at "
+           "the minimum"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps")},
       check_run_keys};
   return table;

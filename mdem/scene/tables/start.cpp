@@ -14,16 +14,17 @@ const KeyTable<StartOptions>& start_table() {
            "may_cool", &StartOptions::may_cool, standard(),
            "damping may take this heat, or that of [thermostat], away; without this key such a run is refused"),
        Key::integer("seed", 0, std::numeric_limits<long>::max(), &StartOptions::seed, standard(),
-                    "of all random numbers: the same seed gives the same run"),
+                    "seed of all random numbers: the same seed gives the same run"),
        Key::integer(
            "stream", 0, std::numeric_limits<long>::max(), &StartOptions::stream, standard(),
            "other random numbers of the motion for the same seed, on the same tubes: a sweep gives each of its "
            "points one"),
        Key::number("twist_deg_per_nm", {"deg/nm", units::degree}, Bounds::range(-30, 30), &StartOptions::turn,
-                   standard(), "tubes side by side begin wound about the axis of the rope, by this along it"),
+                   standard(), "winding of the rope about its axis at the start, for tubes side by side"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),
-                   "tubes side by side begin bent sideways by this, all alike, in sine waves along x"),
-       Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(), "of wave_nm, from end to end")},
+                   "amplitude of a sine wave along x in which all tubes side by side begin"),
+       Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(),
+                    "number of half waves of wave_nm, from end to end")},
       {}};
   return table;
 }

@@ -64,14 +64,17 @@ const KeyTable<StopRule>& stop_table() {
            "value; \"growth\": the rate of its exponential growth is known to this relative error; \"limit\": a "
            "limit is passed; \"shape\": the rope has taken this shape"),
        Key::custom("column", "", otherwise("\"amplitude_nm\"", "required but for \"limit\" and \"shape\""),
-                   "of log.csv", read_column),
+                   "a column of log.csv", read_column),
        Key::custom("value", "", otherwise("1", "required but for \"limit\" and \"shape\""),
                    "in the unit of the column; growth: 0.05 is 5 %", read_value),
        Key::number("over_ps", unit::ps, Bounds::positive(longest_time), &StopRule::over, standard(),
-                   "steady, growth: in the last rows of so much time"),
+                   "steady, growth: length of time over which the last rows are judged")
+           .of_pace(SceneKey::Pace::time),
        Key::number("from_ps", unit::ps, Bounds::non_negative(longest_time), &StopRule::from, standard(),
-                   "not looked at before"),
-       Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: which key of [limits]", read_limit),
+                   "the rule is not looked at before this time")
+           .of_pace(SceneKey::Pace::time),
+       Key::custom("limit", "", otherwise("\"wall_twist\"", "any"), "limit: the key of [limits] that counts",
+                   read_limit),
        Key::custom("shape", "", otherwise("\"helix\"", "required for \"shape\""),
                    "\"straight\", \"spindle\", \"helix\", \"brush\", \"cage\" or \"snarl\"", read_shape)},
       {},

@@ -1,4 +1,4 @@
-// The tables of a scene that are neither a kind (scene/kinds/) nor a drive (scene/loads/), each in a file of its
+// The tables of a scene that are neither a kind (scene/kinds/) nor a drive (scene/drive.hpp), each in a file of its
 // own. A new one needs a struct in scene.hpp, its file here, a line in scene_keys.cpp and one in scene_toml.cpp.
 #pragma once
 

@@ -21,7 +21,7 @@ struct CheckpointHead {
 };
 
 // The state that the neighbour list and the memories of terms are rebuilt from, and that the next list depends on.
-struct ListOrigin {
+struct ListAndMemories {
   std::vector<double> memory;
   double skin = 0;
   std::array<double, 2> twist{};
@@ -160,7 +160,7 @@ bool are_unit_vectors(const Vec3Array& v) {
   return true;
 }
 
-bool could_be(const ListOrigin& list) {
+bool could_be(const ListAndMemories& list) {
   return all_within(list.memory) && list.skin > 0 && list.skin < largest_number && all_within(list.twist) &&
          all_xyz_within(list.position) && are_unit_vectors(list.axis);
 }
@@ -212,7 +212,7 @@ std::string Simulation::serialise() const {
   CheckpointHead head{{}, topology_.elements(), topology_.tubes()};
   std::memcpy(head.format, magic, sizeof magic);
   write(head);
-  const ListOrigin list{memory(), list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
+  const ListAndMemories list{memory(), list_.skin, list_.twist(), list_.reference(), list_.reference_axis()};
   visit_checkpoint(write, *this, list);
   write.bytes.shrink_to_fit();
   return std::move(write.bytes);
@@ -229,7 +229,7 @@ void Simulation::restore(const std::string& bytes) {
     throw std::runtime_error("the checkpoint holds " + std::to_string(head.tubes) + " tubes of " +
                              std::to_string(head.elements) + " elements, the scene " +
                              std::to_string(topology_.tubes()) + " of " + std::to_string(topology_.elements()));
-  ListOrigin list;
+  ListAndMemories list;
   list.position.resize(state_.size());
   list.axis.resize(state_.size());
   const double step_of_scene = time_step_;

@@ -30,12 +30,13 @@ struct Normals {
 namespace ropewalk {
 namespace {
 
-// Draws the numbers of the elements first .. first + group - 1.
-void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first, Normals& out) {
+// Draws the numbers of `group` elements; `number_of` gives the number in the scene of the k-th one.
+template <class Number>
+void draw(std::uint64_t seed, std::int64_t step, int part, const Number& number_of, Normals& out) {
   double radial[3][group], angular[3][group];
   const auto low = static_cast<std::uint32_t>(step), high = static_cast<std::uint32_t>(step >> 32);
   for (int k = 0; k < group; ++k) {
-    const auto element = static_cast<std::uint32_t>(first + k);
+    const auto element = static_cast<std::uint32_t>(number_of(k));
     const auto of = static_cast<std::uint32_t>(2 * part);
     const auto a = philox({low, high, element, of}, seed), b = philox({low, high, element, of + 1}, seed);
     const std::uint32_t bits[3][2] = {{a[0], a[1]}, {a[2], a[3]}, {b[0], b[1]}};
@@ -45,6 +46,13 @@ void draw(std::uint64_t seed, std::int64_t step, int part, std::ptrdiff_t first,
     }
   }
   ROPEWALK_IN_USE(to_normals)(radial, angular, out);
+}
+
+// The number of an element in the scene. The last group may reach beyond the elements; its numbers there are not
+// used.
+int number_of(const Topology& topology, int element) {
+  if (!topology.part || element >= topology.elements()) return element;
+  return topology.part->number[static_cast<std::size_t>(element)];
 }
 
 // nm/ps, of the period of a slice. Its images have it beside the velocities of their originals.
@@ -75,7 +83,8 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
   for_each((n + group - 1) / group, state.size() > parallel_from, [&](int block) {
     const int first = block * group;
     Normals normal;
-    draw(seed_, state.step, state.part, first, normal);
+    draw(
+        seed_, state.step, state.part, [&](int k) { return number_of(topology, first + k); }, normal);
     int tube = topology.tube_of(first);
     for (int k = 0; k < std::min(group, n - first); ++k) {
       while (first + k >= topology.tube_begin[tube + 1]) ++tube;
@@ -90,7 +99,9 @@ void LangevinThermostat::apply(const Topology& topology, double dt, State& state
   });
   if (topology.groups.images == 0) return;
   Normals normal;  // beyond those of all elements
-  draw(seed_, state.step, state.part, (n + group - 1) / group * group, normal);
+  const int behind = (n + group - 1) / group * group;
+  draw(
+      seed_, state.step, state.part, [&](int k) { return behind + k; }, normal);
   set_period_rate(topology, keep * rate + std::sqrt(energy / topology.groups.period_inertia) * normal.of[2][0],
                   state);
 }

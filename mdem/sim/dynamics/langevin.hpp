@@ -25,6 +25,7 @@ class LangevinThermostat : public Thermostat {
   LangevinThermostat(Schedule temperature, double friction, std::uint64_t seed)
       : temperature_(std::move(temperature)), friction_(friction), seed_(seed) {}
   void apply(const Topology& topology, double dt, State& state, std::vector<double>& variables) const override;
+  bool acts_by_element() const override { return true; }
 
  private:
   Schedule temperature_;

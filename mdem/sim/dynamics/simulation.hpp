@@ -195,8 +195,8 @@ class Simulation {
   Motion free_accelerations(const Motion& forces) const;
   double above_minimum(double enough, long most) const;
   std::optional<std::pair<Motion, double>> falling_motion(long most) const;
-  template <class Archive, class Self, class ListOrigin>
-  static void visit_checkpoint(Archive& archive, Self& self, ListOrigin& list);
+  template <class Archive, class Self, class ListAndMemories>
+  static void visit_checkpoint(Archive& archive, Self& self, ListAndMemories& list);
   bool could_go_on(double step_of_scene) const;
 
   Topology topology_;

@@ -62,9 +62,11 @@ double largest_eigenvalue(const Matrix6& m) { return eigenvalues(m)[5]; }
 // K and C of one wave over the masses; deflections x, y, z, then rotations.
 struct Wave {
   Matrix6 stiffness = Matrix6::Zero(), bond_damping = Matrix6::Zero(), contact_damping = Matrix6::Zero();
+  double term_damping = 0;  // 1/ps, of all deflections and rotations alike
 
   double largest(double step) const {
-    return largest_eigenvalue(step * step * stiffness + 2 * step * (bond_damping + contact_damping));
+    return largest_eigenvalue(step * step * stiffness + 2 * step * (bond_damping + contact_damping)) +
+           2 * step * term_damping;
   }
 };
 
@@ -75,6 +77,7 @@ struct Lattice {
   double spacing = 0;    // nm
   double stiffness = 0;  // eV/nm^2, of a neighbouring row
   double held = 0;       // eV/nm^2, by force terms
+  double dragged = 0;    // 1/ps, likewise
   ContactViscosity viscosity;
 
   // A chain's matrix: `along` of deflections and of rotations about the axis, `sideways` of the rest.
@@ -157,6 +160,7 @@ struct Lattice {
           if (!alone) add_contact(Vector3(b1, (2 * b2 - b1) / std::sqrt(3.0), 0), q, wave);
           add_bonds(q, wave);
           for (int axis = 0; axis < 3; ++axis) wave.stiffness(axis, axis) += held / type.mass;
+          wave.term_damping = dragged;
           all.push_back(wave);
         }
       }
@@ -165,8 +169,12 @@ struct Lattice {
 };
 
 Lattice lattice_of(const Topology& topology, const Interaction& in, const TubeType& type, double spacing) {
-  Lattice out{type, in.damping.bond, spacing, 0, 0, {}};
-  for (const auto& term : in.terms) out.held += term->stiffness();
+  Lattice out{type, in.damping.bond, spacing, 0, 0, 0, {}};
+  for (const auto& term : in.terms) {
+    out.held += term->stiffness();
+    // An inertia of m r^2 or more: turns are damped no faster.
+    out.dragged += term->damping() / std::min(type.mass, type.inertia / (type.radius * type.radius));
+  }
   if (!in.has_contact() || topology.tubes() < 2 || spacing <= 0) return out;
   out.stiffness = std::max(contact_stiffness(topology, in, type, spacing), 0.0);
   if (in.damped_contact()) out.viscosity = in.damping.contact;
@@ -210,7 +218,7 @@ TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, doub
       out.stiffest.back().push_back(largest_eigenvalue(wave.stiffness));
       const Vector6 rates = eigenvalues(wave.bond_damping + wave.contact_damping);
       out.damping_rates.insert(out.damping_rates.end(), rates.begin(), rates.end());
-      raise(out.damping_rate, rates[5]);
+      raise(out.damping_rate, rates[5] + lattice.dragged);
     }
   }
   return out;

@@ -29,6 +29,9 @@ class Thermostat {
   // change of the kinetic energy as heat. The result must depend on the arguments alone, state.step and state.part
   // included, and not on the number of threads: a resumed run then continues with the same bits.
   virtual void apply(const Topology& topology, double dt, State& state, std::vector<double>& variables) const = 0;
+  // Whether the change of an element follows from its own velocities, its number in the scene (Topology::part) and
+  // the step alone. Several processes may then each apply it to their own elements.
+  virtual bool acts_by_element() const { return false; }
 };
 
 struct ThermostatKind {

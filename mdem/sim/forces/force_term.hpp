@@ -133,15 +133,18 @@ class ForceTerm {
   virtual void add_in_kick(const State&, const ForceRows& /*total*/, const Segment& /*part*/,
                            const ForceRows& /*out*/) const {}
 
-  // Adds the derivatives of the term's forces by the places and turns of the elements: `add` takes the block of minus
-  // the derivative of the force and torque on i by those of j, for each pair with one, both ways. Turns are those of
-  // sim/dynamics/tangent.hpp. False: the term has no tangent, and statics refuses it by its name.
+  // Adds the derivatives of the term's forces by the places and turns of the elements: `add` takes the block of
+  // minus the derivative of the force and torque on i by those of j, for each pair with one, both ways. Turns are
+  // those of sim/dynamics/tangent.hpp. False: the term has no tangent, and statics refuses it by its name.
   using AddBlock = std::function<void(int i, int j, const Eigen::Matrix<double, 6, 6>& block)>;
   virtual bool add_tangent(const State&, const AddBlock& /*add*/) const { return false; }
 
   // eV/nm^2: the largest eigenvalue of the second derivatives of its energy by the positions of all elements; an
   // upper bound. The time step follows from it.
   virtual double stiffness() const { return 0; }
+  // eV ps/nm^2: the same of minus the derivatives of its forces by all velocities, where turns count as the radius
+  // of the tube times the angular velocity.
+  virtual double damping() const { return 0; }
 
   // Whether there are any.
   virtual bool remembers() const { return false; }

@@ -121,16 +121,18 @@ void ForceTerms::add_reference(const Topology& topology, const Interaction& in, 
 
 void compute_reference(const Topology& topology, const Interaction& in, const State& s, Forces& out) {
   out = Forces(s.size());
+  ForceTerms terms;
+  terms.use(in);
+  const std::vector<char>* broken = terms.broken_bonds();
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i)
-      bond(topology.type_of(t), in, s, static_cast<std::size_t>(i), out);
+      if (!broken || !(*broken)[static_cast<std::size_t>(i)])
+        bond(topology.type_of(t), in, s, static_cast<std::size_t>(i), out);
   if (in.has_contact())
     for_all_pairs(topology, in, [&](int i, int j) {
       contact_pair({topology.tube_type[topology.tube_of(i)], topology.tube_type[topology.tube_of(j)]}, in, s,
                    static_cast<std::size_t>(i), static_cast<std::size_t>(j), out);
     });
-  ForceTerms terms;
-  terms.use(in);
   terms.add_reference(topology, in, s, out);
 }
 

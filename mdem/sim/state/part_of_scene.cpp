@@ -16,7 +16,8 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
     const int tube = scene.tube_of(number[i]), end = scene.tube_begin[static_cast<std::size_t>(tube) + 1];
     for (next = i + 1; next < number.size() && number[next] == number[next - 1] + 1 && number[next] < end;) ++next;
     out.add_tube(static_cast<int>(next - i), scene.tube_type[static_cast<std::size_t>(tube)]);
-    part.tube_end.push_back(end);
+    const int last = scene.groups.ends_meet ? scene.strand_of(tube).second : tube;
+    part.row_end.push_back(scene.tube_begin[static_cast<std::size_t>(last) + 1]);
   }
   part.number = std::move(number);
   part.own = std::move(own);

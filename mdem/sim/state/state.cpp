@@ -131,9 +131,9 @@ int Topology::last_within(int elements, int element, int tube) const {
     return std::min(last, tube_begin[last_tube + 1] - 1);
   }
   ROPEWALK_EXPECTS(!groups.ends_meet);
-  // Other pieces of the tube may follow.
+  // Other pieces of the tube, or of the strand, may follow.
   const auto number = [&](int i) { return part->number[static_cast<std::size_t>(i)]; };
-  const int limit = std::min(number(element) + elements, part->tube_end[t] - 1);
+  const int limit = std::min(number(element) + elements, part->row_end[t] - 1);
   int last = element;
   while (last + 1 < this->elements() && number(last + 1) <= limit) ++last;
   return last;

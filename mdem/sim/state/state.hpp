@@ -109,9 +109,10 @@ struct TubeType {
 // and bond of the scene belongs to one process. Tubes of such a topology are pieces: consecutive elements of one
 // tube.
 struct PartOfScene {
-  std::vector<char> own;      // of each element
-  std::vector<int> number;    // of each element, in the scene
-  std::vector<int> tube_end;  // of each piece, the number behind the last element of its tube in the scene
+  std::vector<char> own;     // of each element
+  std::vector<int> number;   // of each element, in the scene
+  std::vector<int> row_end;  // of each piece, the number behind the last element of its tube in the scene; where
+                             // ends meet (TubeGroups::ends_meet), of its strand
 };
 
 // What the tubes of a scene form together. The mass, length and section of a rope follow from it

@@ -15,23 +15,25 @@ namespace ropewalk {
 
 enum class VectorUnit { base, v3, v4 };
 
-// The best of the processor, until another one is chosen.
-extern VectorUnit vector_unit_in_use;
+// Of this thread, and of the teams that it makes (in_team(), for_each()): simulations in several threads of a
+// process may have units of their own. The best of the processor, until another one is chosen.
+VectorUnit vector_unit_in_use();
+void use_vector_unit(VectorUnit unit);
 
 // Names of the units that this machine has, best first.
 std::vector<std::string> instruction_sets();
 std::string instructions_in_use();
-// Chooses a unit by its name; "" chooses the best. Returns false where there is none of that name.
+// Chooses a unit for this thread by its name; "" chooses the best. Returns false where there is none of that name.
 bool use_instructions(const std::string& name);
 
 }  // namespace ropewalk
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define ROPEWALK_HAS_VECTOR_UNITS
-#define ROPEWALK_IN_USE(function)                                                   \
-  (::ropewalk::vector_unit_in_use == ::ropewalk::VectorUnit::v4   ? in_v4::function \
-   : ::ropewalk::vector_unit_in_use == ::ropewalk::VectorUnit::v3 ? in_v3::function \
-                                                                  : in_base::function)
+#define ROPEWALK_IN_USE(function)                                                     \
+  (::ropewalk::vector_unit_in_use() == ::ropewalk::VectorUnit::v4   ? in_v4::function \
+   : ::ropewalk::vector_unit_in_use() == ::ropewalk::VectorUnit::v3 ? in_v3::function \
+                                                                    : in_base::function)
 #else
 #define ROPEWALK_IN_USE(function) in_base::function
 #endif

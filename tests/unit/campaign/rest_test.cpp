@@ -34,7 +34,7 @@ std::vector<LogRow> log_of(double from, double to, double voids = 0, double time
   return log;
 }
 std::array<RestSide, 2> sides(const std::vector<LogRow>& below, const std::vector<LogRow>& above) {
-  return {rest_side(below, 0.2), rest_side(above, 1.2)};
+  return {rest_side(below, {}, 0.2), rest_side(above, {}, 1.2)};
 }
 
 TEST(Rest, IsQuotedWhereBothSidesAgree) {
@@ -158,6 +158,23 @@ TEST(Rest, TellsTwoStatesApart) {
 // The same twist in two shapes is no agreement either.
 TEST(Rest, AsksForTheSameBranch) {
   EXPECT_FALSE(rest_verdict(sides(log_of(15, 65), log_of(100, 65, 40)), 0.02).agree());
+}
+
+TEST(Rest, SaysWhichSideIsBeyondALimit) {
+  auto both = sides(log_of(15, 65), log_of(100, 65));
+  EXPECT_TRUE(beyond_of(both).empty());
+  LimitRecord wall;
+  wall.key = "wall_twist";
+  wall.passed = true;
+  wall.passed_at_ps = 243;
+  wall.passed_at_step = 5000;
+  both[1].limits = {wall};
+  ASSERT_EQ(beyond_of(both).size(), 1u);
+  EXPECT_THAT(beyond_of(both).front(), HasSubstr("from above is beyond wall_twist from 243 ps on"));
+  const std::string table = rest_csv(both);
+  EXPECT_THAT(table, HasSubstr(",first_limit,first_limit_ps\nbelow,"));
+  EXPECT_THAT(table, HasSubstr(",,nan\nabove,"));
+  EXPECT_THAT(table, ::testing::EndsWith(",wall_twist,243\n"));
 }
 
 // 19 and 91 published tubes of 67.8 nm under 35 nN nm come to rest at 228 and 65 degrees over 66.4 nm

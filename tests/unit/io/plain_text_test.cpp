@@ -12,9 +12,9 @@
 
 #include "campaign/campaign.hpp"
 #include "io/csv_reader.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "model/error.hpp"
-#include "scene/memory.hpp"
+#include "scene/memory_size.hpp"
 
 namespace ropewalk {
 namespace {
@@ -104,23 +104,23 @@ TEST(Cluster, FilesHoldNamesAsData) {
 }
 
 TEST(Failure, IsALineWithARemedy) {
-  EXPECT_NE(failure_words(std::bad_alloc()).find("the memory does not suffice; take fewer"), std::string::npos);
-  EXPECT_NE(failure_words(std::length_error("cannot create std::vector")).find("memory"), std::string::npos);
+  EXPECT_NE(error_words(std::bad_alloc()).find("the memory does not suffice; take fewer"), std::string::npos);
+  EXPECT_NE(error_words(std::length_error("cannot create std::vector")).find("memory"), std::string::npos);
   try {
     [[maybe_unused]] const auto json = nlohmann::json::parse("{");
   } catch (const std::exception& e) {
-    EXPECT_EQ(failure_words(e).find("a JSON file does not hold what it should; restore it"), 0u)
-        << failure_words(e);
-    EXPECT_EQ(failure_code(e), 2);
+    EXPECT_EQ(error_words(e).find("a JSON file does not hold what it should; restore it"), 0u)
+        << error_words(e);
+    EXPECT_EQ(error_code(e), 2);
   }
   try {
     std::filesystem::create_directory("/proc/none/x");
   } catch (const std::exception& e) {
-    EXPECT_EQ(failure_words(e).find("/proc/none/x: cannot be used: "), 0u) << failure_words(e);
-    EXPECT_EQ(failure_code(e), 2);
+    EXPECT_EQ(error_words(e).find("/proc/none/x: cannot be used: "), 0u) << error_words(e);
+    EXPECT_EQ(error_code(e), 2);
   }
-  EXPECT_EQ(failure_code(std::bad_alloc()), 3);
-  EXPECT_EQ(failure_words(InputError({"a\nb", 1, "k"}, "x", "y")), "a\\nb:1: k: x; y");
+  EXPECT_EQ(error_code(std::bad_alloc()), 3);
+  EXPECT_EQ(error_words(InputError({"a\nb", 1, "k"}, "x", "y")), "a\\nb:1: k: x; y");
 }
 
 TEST(Memory, IsThatOfTheLimit) {

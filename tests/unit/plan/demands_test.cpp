@@ -40,6 +40,25 @@ std::string turned(double start, double degrees) {
       start, degrees);
 }
 
+// The thinner tubes twist farther, wherever they stand among the sets.
+TEST(Demands, DoNotDependOnTheOrderOfTypes) {
+  const auto notes = [](const char* sets, const char* types) {
+    Scene scene = scene_of_text(
+        fmt::format("format = \"ropewalk-scene-1\"\nparameters = [{}]\ntube_types = [{}]\nelement_length_nm = 1.3\n"
+                    "[rope]\ntubes = 7\nlength_nm = 30\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 0.1\n",
+                    sets, types),
+        "s.toml");
+    const Prepared p = prepare(scene);
+    std::string all;
+    for (const std::string& note : limits_ahead(scene, p)) all += note + "\n";
+    return all;
+  };
+  const std::string wide_first = notes("\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"", "0, 1, 1, 0, 0, 0, 0"),
+                    thin_first = notes("\"cnt-5-5-tersoff\", \"cnt-10-10-tersoff\"", "1, 0, 0, 1, 1, 1, 1");
+  EXPECT_EQ(wide_first, thin_first);
+  EXPECT_THAT(wide_first, HasSubstr("The load may bring twist_deg of cnt-5-5-tersoff to "));
+}
+
 TEST(TubeLaw, BearsWhatItSaysItBears) {
   for (const char* set : {"cnt-10-10-paper", "cnt-10-10-tersoff"}) {
     SCOPED_TRACE(set);
@@ -58,6 +77,12 @@ TEST(TubeLaw, BearsWhatItSaysItBears) {
         EXPECT_NEAR(law.torque(strain, twist), torque * units::nN_nm, 1e-6 * units::nN_nm);
       }
     EXPECT_NEAR(law.moment(law.curvature_under(3 * units::nN_nm)), 3 * units::nN_nm, 1e-6 * units::nN_nm);
+    // A load far smaller than what the other one alone would do.
+    const double small = 1e-4 * units::nN_nm;
+    for (const double twist : {0.0, 0.04, -0.05})
+      EXPECT_NEAR(law.tension(law.strain_under(small, twist), twist), small, 1e-3 * small) << twist;
+    for (const double strain : {0.0, 0.05})
+      EXPECT_NEAR(law.torque(law.twist_under(small, strain), strain), small, 1e-3 * small) << strain;
     // Hooke's law, for small loads.
     EXPECT_NEAR(law.strain_under(0.1, 0), 0.1 / type.bond.stretch, 1e-3 * 0.1 / type.bond.stretch);
     EXPECT_NEAR(law.twist_under(0.1, 0), 0.1 / type.bond.twist, 1e-3 * 0.1 / type.bond.twist);

@@ -106,6 +106,9 @@ TEST(Tensile, TableAndFigureHaveMeansAndErrors) {
   EXPECT_THAT(svg, HasSubstr("no bar: one seed"));
   EXPECT_THAT(svg, HasSubstr("y=\"322.0\">0</text>")) << "the axis begins at 0";
   EXPECT_THAT(load_tests_svg(kind, groups, "slip_nm"), testing::IsEmpty()) << "both are at the same place";
+  LoadTestKind beside = kind;
+  beside.levels = {{1.5, "measured yarn"}};
+  EXPECT_THAT(load_tests_svg(beside, groups, "beta_deg"), HasSubstr("measured yarn"));
   Figures figures;
   const std::string part = load_tests_part(kind, groups, "beta_deg", "tube_length_nm", figures);
   EXPECT_THAT(part, HasSubstr("<td>2 of 2</td>"));

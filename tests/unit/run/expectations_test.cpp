@@ -45,7 +45,7 @@ std::string refusal_of(const std::string& tables) {
 TEST(Expectations, AreJudgedAtTheirTimeAndAtTheEnd) {
   const std::vector<LogRow> rows = {row_at(0, 0), row_at(2, 10), row_at(4, 12)};
   const auto holds = [&](std::optional<double> at, double value, double tolerance) {
-    return judge({{"geometric_twist_deg", at, value, tolerance}}, rows).front().holds;
+    return judge({{"geometric_twist_deg", at, value, tolerance, ""}}, rows).front().holds;
   };
   EXPECT_TRUE(holds({}, 12.4, 0.5));
   EXPECT_FALSE(holds({}, 12.6, 0.5));
@@ -54,11 +54,11 @@ TEST(Expectations, AreJudgedAtTheirTimeAndAtTheEnd) {
   EXPECT_TRUE(holds(2, 10, 1e-9));
   EXPECT_TRUE(holds(4.1, 12, 1)) << "whole steps end a little before";
   EXPECT_FALSE(holds(7, 12, 1)) << "no row is there";
-  EXPECT_FALSE(judge({{"tension_upper_nN", {}, 0, 1e12}}, rows).front().holds) << "it has no value";
-  EXPECT_FALSE(judge({{"geometric_twist_deg", {}, 0, 1e12}}, std::vector<LogRow>()).front().holds)
+  EXPECT_FALSE(judge({{"tension_upper_nN", {}, 0, 1e12, ""}}, rows).front().holds) << "it has no value";
+  EXPECT_FALSE(judge({{"geometric_twist_deg", {}, 0, 1e12, ""}}, std::vector<LogRow>()).front().holds)
       << "no row at all";
   const std::vector<Judgement> all =
-      judge({{"geometric_twist_deg", {}, 12, 1}, {"geometric_twist_deg", 2, 12, 1}}, rows);
+      judge({{"geometric_twist_deg", {}, 12, 1, ""}, {"geometric_twist_deg", 2, 12, 1, ""}}, rows);
   EXPECT_EQ(missed(all), 1);
   EXPECT_EQ(all[0].words, "geometric_twist_deg is 12 at the end, as expected: 12 ± 1");
   EXPECT_EQ(all[1].words, "geometric_twist_deg is 10 at 2 ps, not as expected: 12 ± 1");

@@ -85,7 +85,7 @@ TEST_F(LammpsFiles, StartKeepsItsBits) {
   EXPECT_EQ(back.parameters, s.parameters);
   spit(dir.start(), "{\"format\": \"something else\"}");
   EXPECT_THROW(read_start(dir), InputError);
-  spit(dir.start(), "{\"format\": \"ropewalk-lammps-1\"}");
+  spit(dir.start(), "{\"format\": \"ropewalk-lammps-2\"}");
   EXPECT_THROW(read_start(dir), InputError);
 }
 
@@ -168,14 +168,16 @@ TEST_F(LammpsStateFiles, NumbersThatLammpsDoesNotWriteAreRefused) {
 // A number beyond all integers was cast to one.
 TEST_F(LammpsFiles, RowsThatLammpsDoesNotWriteAreRefused) {
   const std::string title = "step,time_ps,stretch_eV\n";
-  for (const char* row : {"1e300,0,0,0,0,0,0,0,0,0\n", "nan,0,0,0,0,0,0,0,0,0\n", "-1,0,0,0,0,0,0,0,0,0\n",
-                          "0.5,0,0,0,0,0,0,0,0,0\n", "1,0,0,inf,0,0,0,0,0,0\n"}) {
+  for (const char* row : {"1e300,0,0,0,0,0,0,0,0,0,0\n", "nan,0,0,0,0,0,0,0,0,0,0\n", "-1,0,0,0,0,0,0,0,0,0,0\n",
+                          "0.5,0,0,0,0,0,0,0,0,0,0\n", "1,0,0,inf,0,0,0,0,0,0,0\n"}) {
     spit(dir.rows(), title + row);
     EXPECT_THROW(read_lammps_rows(dir), InputError) << row;
   }
   spit(dir.start(),
-       "{\"format\": \"ropewalk-lammps-1\", \"step\": 1, \"time_ps\": 0, \"time_step_ps\": 1, \"work_eV\": 0, "
-       "\"dissipated_eV\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": 0, \"parameters\": "
+       "{\"format\": \"ropewalk-lammps-2\", \"step\": 1, \"time_ps\": 0, \"time_step_ps\": 1, \"work_eV\": 0, "
+       "\"dissipated_eV\": 0, \"heat_eV\": 0, \"lineage\": 0, \"strands_begin_with_tubes\": [], "
+       "\"strand_holes_nm\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": "
+       "0, \"parameters\": "
        "[\"../other.toml\"]}");
   EXPECT_THROW(read_start(dir), InputError);
 }

@@ -11,8 +11,10 @@
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "run/moving_scene.hpp"
+#include "scene/kinds/state.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
+#include "scene/single_state.hpp"
 #include "scene/state_files.hpp"
 
 namespace ropewalk {
@@ -180,6 +182,14 @@ TEST_F(StateOfAnEnd, BrokenTubesStayBroken) {
     for (const TermEvent& e : on.term_events()) EXPECT_EQ(e.time, 0);
     write_end(on, "again.csv");
     EXPECT_EQ(read_file(path("again.csv")), read_file(path("end.csv")));
+  }
+  // By itself as well, on either path.
+  SingleState alone;
+  alone.source = std::make_shared<StateSource>(path("end.csv"));
+  alone.parameters = {"cnt-10-10-tersoff"};
+  for (const bool reference : {false, true}) {
+    alone.reference = reference;
+    EXPECT_NEAR(evaluate(alone).forces.energy.bonds(), s.forces().energy.bonds(), 1e-9);
   }
   std::string wrong = read_file(path("end.csv"));
   wrong.replace(wrong.find("elements: ") + 10, 0, "0,");

@@ -40,12 +40,12 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const Chirality c = set.chirality;
   const RelaxedTube& relaxed = session.relaxed();
   const std::vector<LatticeVector> periods =
-      calibrate::twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
+      twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
   std::string input = "# uniformly twisted periodic cells\n";
-  std::vector<calibrate::TwistedCell> cells;
+  std::vector<TwistedCell> cells;
   for (const double wanted : shears(c)) {
-    const auto cell = calibrate::twisted_cell_near(c, relaxed.shape, periods,
-                                                   wanted / (relaxed.shape.radius * relaxed.shape.radius));
+    const auto cell =
+        twisted_cell_near(c, relaxed.shape, periods, wanted / (relaxed.shape.radius * relaxed.shape.radius));
     if (!cells.empty() && cell.twist == cells.back().twist) continue;  // no cell is twisted further
     TubeShape shape = relaxed.shape;
     shape.twist = cell.twist;

@@ -22,7 +22,7 @@ Potential potential_of(const ParameterSet& set) {
   const std::string name = provenance_value(set, "potential"), hash = provenance_value(set, "potential_hash");
   Potential potential;
   try {
-    potential = calibrate::find_potential(name);
+    potential = find_potential(name);
   } catch (const InputError& e) {
     throw NotApplicable(
         fmt::format("the set was made with the interatomic potential \"{}\", which LAMMPS does not "
@@ -104,7 +104,7 @@ ReferenceTable MdSession::table(const std::string& title, const std::string& cas
   t.add("potential", fmt::format("{} ({}, hash {})", potential_.name, fs::path(potential_.file).filename().string(),
                                  potential_.file_hash));
   if (contact) t.add("between_tubes", between_tubes(set_));
-  t.add("lammps", calibrate::lammps_version({}).text);
+  t.add("lammps", lammps_version({}).text);
   t.add("input_hash", hash_hex(inputs_));
   t.add("wall_seconds", fmt::format("{:.0f}", seconds_));
   t.add("command", fmt::format("ropewalk validate run {} --fresh", case_name));
@@ -112,7 +112,7 @@ ReferenceTable MdSession::table(const std::string& title, const std::string& cas
   return t;
 }
 
-long period_hexagons(Chirality c) { return cell_hexagons(c, calibrate::translation_vector(c)); }
+long period_hexagons(Chirality c) { return cell_hexagons(c, translation_vector(c)); }
 
 double period_of(Chirality c, const TubeShape& shape) {
   return static_cast<double>(period_hexagons(c)) * shape.length_per_hexagon;

@@ -17,10 +17,9 @@
 namespace ropewalk::validate {
 
 using calibrate::angstrom, calibrate::header_commands, calibrate::data_file;
-using calibrate::AtomLaw, calibrate::Shell, calibrate::Well, calibrate::Potential;
-using calibrate::cell_hexagons, calibrate::extra_hexagons, calibrate::hexagons_in, calibrate::held_band;
-using calibrate::FiniteTube, calibrate::RelaxedTube, calibrate::TubeShape;
-using calibrate::Site, calibrate::LatticeVector, calibrate::strip_sites, calibrate::height_in_thirds;
+using calibrate::AtomLaw, calibrate::Shell, calibrate::Well;
+using calibrate::extra_hexagons, calibrate::hexagons_in, calibrate::held_band;
+using calibrate::FiniteTube, calibrate::RelaxedTube;
 
 // All runs of one table, in one folder. They share the interatomic potential and the law between tubes, those of
 // the set; the hash covers all their inputs. Throws NotApplicable where the set's potential is not one that is

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "atomistic/lattice.hpp"
+#include "atoms/lattice.hpp"
 #include "cases/common/lammps_session.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"

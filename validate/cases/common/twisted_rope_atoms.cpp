@@ -4,8 +4,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "atomistic/potential.hpp"
 #include "atomistic/runs.hpp"
+#include "atoms/potential.hpp"
+#include "atoms/tube_reference.hpp"
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "io/parameters_toml.hpp"
@@ -206,7 +207,7 @@ std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& se
 }
 
 std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set) {
-  return rope_atoms(rope, set, {set.radius, 2 / set.atoms_per_length, natural_twist(set), 0, 0});
+  return rope_atoms(rope, set, reference_of(set).shape);
 }
 
 ReferenceTable twist_atoms(const TwistedRope& rope, const ParameterSet& set, const std::vector<double>& angles,

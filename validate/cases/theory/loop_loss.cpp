@@ -18,7 +18,7 @@ constexpr double twist = 1.2;  // deg/nm
 
 struct Loop {
   double lost = 0, put_in = 0;  // eV
-  double open = 0;              // eV, that the account of energy misses
+  double open = 0;              // eV, that the energy balance misses
 };
 
 // The loss is what damping has taken after a hold in which the rope comes to rest.
@@ -75,7 +75,7 @@ CaseResult run(const CaseContext& context) {
   const StraightLine fit = *line_through(rates, losses);
   result.check_absolute("exponent of the loss", fit.b, 1, 0.1, "",
                         "two decades of the rate, all slower than sound");
-  result.check_absolute("account of energy, part of the work", open, 0, 2e-3, "",
+  result.check_absolute("energy balance, part of the work", open, 0, 2e-3, "",
                         "the error of the integration over a whole loop");
   const RopeInMachine rope(tube.set, 7, elements);
   const double turned = twist * units::degree * elements * tube.set.element_length / rope.bonded();

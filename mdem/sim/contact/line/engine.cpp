@@ -69,7 +69,7 @@ template <class Buffers>
 void LineEngine::compute_all(Buffers& b, const Topology& topology, const NeighbourList& list, const State& state,
                              const Vec3Array& axis, bool energies, const TubeWork& tubes) {
   const bool parallel = state.size() > parallel_from, at_once = state.size() > finish_at_once_from;
-  const int threads = parallel ? omp_get_max_threads() : 1;
+  const int threads = parallel ? threads_in_use() : 1;
   const KernelInput<Buffers> input{
       &topology, &state, &axis, &list_, nullptr, b.pairs.data(), b.unit, 1 / b.unit, 2 * list.displacement(),
       energies};

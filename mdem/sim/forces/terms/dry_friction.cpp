@@ -74,8 +74,8 @@ class DryFrictionTerm : public ForceTerm {
   DryFrictionTerm(const DryFriction& law, const Topology& scene)
       : law_(law),
         tube_begin_(scene.tube_begin),
-        stiffness_(12 * (std::max(law.axial, law.spin) * scene.longest_element() + 2 * law.end) /
-                   law.elastic_slip) {}
+        stiffness_(12 * (std::max(law.axial, law.spin) * scene.longest_element() + 2 * law.end) / law.elastic_slip),
+        damping_(law.drag * scene.longest_element() * most_rows(scene)) {}
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<DryFrictionTerm>(*this); }
   std::string name() const override { return "friction"; }
 
@@ -148,6 +148,7 @@ class DryFrictionTerm : public ForceTerm {
 
   // Six tubes around one, 2 K of two elements.
   double stiffness() const override { return stiffness_; }
+  double damping() const override { return damping_; }
 
   bool remembers() const override { return true; }
   TermState memory() const override {
@@ -206,6 +207,16 @@ class DryFrictionTerm : public ForceTerm {
     double length = 0, radius = 0;  // nm
     int image = 0;                  // of a slice: 1 above it, -1 below it, 0 in it
   };
+
+  // The largest sum over a row of the drag's matrix over eta l, with six tubes at the distance d around one. The
+  // two slips are orthogonal, and with the turns r w as lengths their rates are
+  //   along the axis:  v_a - v_b + x (r w_a + r w_b),  x = d/(2 r);  six tubes turn half of it about each axis,
+  //   against spin:    r w_a + r w_b + (v_a - v_b) 2 r/d,            2 r/d < 1.
+  static double most_rows(const Topology& scene) {
+    double x = 0;
+    for (const TubeType& type : scene.types) x = std::max(x, 1 + 0.5 * begins_within / type.radius);
+    return std::max(24.0, 6 * x * (1 + x));
+  }
 
   // --- elements ---
   void know(const Topology& topology, const State& state) {
@@ -467,7 +478,7 @@ class DryFrictionTerm : public ForceTerm {
 
   DryFriction law_;
   std::vector<int> tube_begin_;  // of the scene
-  double stiffness_ = 0;
+  double stiffness_ = 0, damping_ = 0;
   std::vector<Element> elements_;
   TermState remembered_;  // until the next list
   std::vector<Contact> contacts_;

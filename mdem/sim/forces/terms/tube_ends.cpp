@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-// Two ends that meet: elements of the scene, and their contact.
+// Two ends that meet: their elements and their contact.
 struct Joint {
   int below = 0, above = 0;
   double half_below = 0, half_above = 0;  // nm, of the elements
@@ -34,9 +34,26 @@ class TubeEnds : public ForceTerm {
                          0.5 * scene.types[type_above].element_length,
                          type_below * scene.types.size() + type_above});
     }
+    here_ = joints_;
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeEnds>(*this); }
   std::string name() const override { return "ends"; }
+
+  // Of several processes each has the joints whose two elements are here; copies reach as far as a contact.
+  void prepare(const ListedScene& scene) override {
+    if (!scene.topology.part) return;
+    const std::vector<int>& number = scene.topology.part->number;
+    here_.clear();
+    for (std::size_t i = 0; i + 1 < number.size(); ++i) {
+      if (number[i] + 1 != number[i + 1]) continue;
+      const auto joint = std::lower_bound(joints_.begin(), joints_.end(), number[i],
+                                          [](const Joint& j, int below) { return j.below < below; });
+      if (joint == joints_.end() || joint->below != number[i]) continue;
+      here_.push_back(*joint);
+      here_.back().below = static_cast<int>(i);
+      here_.back().above = static_cast<int>(i) + 1;
+    }
+  }
 
   // Its energy belongs to the element below.
   TermSum add(const State& state, const Segment& part, const ForceRows& out) const override {
@@ -44,9 +61,9 @@ class TubeEnds : public ForceTerm {
     const auto within = [&](int i) { return part.begin <= i && i < part.end; };
     const auto row = [&](int i) { return static_cast<std::size_t>(i - out.origin); };
     // Joints rise with their elements; that of the element before the part has its first one above.
-    auto joint = std::lower_bound(joints_.begin(), joints_.end(), static_cast<int>(part.begin),
+    auto joint = std::lower_bound(here_.begin(), here_.end(), static_cast<int>(part.begin),
                                   [](const Joint& j, int i) { return j.above < i; });
-    for (; joint != joints_.end() && joint->below < part.end; ++joint) {
+    for (; joint != here_.end() && joint->below < part.end; ++joint) {
       const JointForce f = force_of(*joint, state);
       if (within(joint->below)) {
         out.force.add(row(joint->below), -f.force_above);
@@ -62,7 +79,7 @@ class TubeEnds : public ForceTerm {
   }
 
   bool add_tangent(const State& state, const AddBlock& add) const override {
-    for (const Joint& joint : joints_) {
+    for (const Joint& joint : here_) {
       const auto forces = [&](const Pose& below, const Pose& above) {
         const JointForce f = force_of(joint, below, above);
         return PairVector(
@@ -84,7 +101,7 @@ class TubeEnds : public ForceTerm {
     return joints_.empty() ? 0 : 2 * most;
   }
 
-  std::size_t bytes() const override { return joints_.size() * sizeof(Joint); }
+  std::size_t bytes() const override { return (joints_.size() + here_.size()) * sizeof(Joint); }
 
  private:
   JointForce force_of(const Joint& joint, const State& state) const {
@@ -115,7 +132,8 @@ class TubeEnds : public ForceTerm {
   }
 
   std::vector<EndContact> contacts_;
-  std::vector<Joint> joints_;
+  std::vector<Joint> joints_;  // of the scene
+  std::vector<Joint> here_;    // of this process, by its own numbers of elements
 };
 
 }  // namespace

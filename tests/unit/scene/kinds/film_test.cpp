@@ -137,6 +137,18 @@ TEST(Film, IsThatOfItsSeed) {
   EXPECT_NE(d.state.position.z, a.state.position.z);
 }
 
+// To the ends of the tubes, and not to the centres of their last elements.
+TEST(Film, IsAsThickInElementsOfAnyLength) {
+  std::vector<std::string> said;
+  for (const char* length : {"element_length_nm = 1.3\n", "element_length_nm = 0.65\n"}) {
+    Scene scene =
+        film_scene("tubes = 10\nlength_nm = 15.6\nwidth_nm = 18\ndepth_nm = 18\nlaid = \"resting\"\n", length);
+    const BuiltScene b = build(scene);
+    said.push_back(scene.source->description(b.topology, b.state, 0));
+  }
+  EXPECT_EQ(said[0], said[1]);
+}
+
 TEST(Film, OneLayerStaysOne) {
   const BuiltScene b = film("tubes = 1\nlength_nm = 20\nwidth_nm = 21\ndepth_nm = 21\n");
   EXPECT_EQ(b.state.position.z[0], 0);

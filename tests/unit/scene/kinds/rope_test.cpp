@@ -320,19 +320,26 @@ TEST(RopePacking, TubesStayAtPlacesThatAreTyped) {
   Scene apart = unlike("tubes = 2\nplaces_nm = [[0, 0], [4, 0]]\n");
   const Prepared unlike_pair = prepare(apart);
   EXPECT_EQ(unlike_pair.state.position.x[static_cast<std::size_t>(unlike_pair.topology.tube_begin[1])], 4);
-  const auto message = [](const std::string& rope) -> std::string {
+  const auto message = [](const std::string& rope, Scene (*make)(const std::string&)) -> std::string {
     try {
-      Scene refused = scene_of(rope);
+      Scene refused = make(rope);
+      prepare(refused);
       return "none";
     } catch (const InputError& e) {
       return e.what();
     }
   };
-  EXPECT_THAT(message("tubes = 3\nlength_nm = 6\nplaces_nm = [[0, 0], [1.8, 0]]\n"),
+  const auto alike = [](const std::string& rope) { return scene_of(rope); };
+  EXPECT_THAT(message("tubes = 3\nlength_nm = 6\nplaces_nm = [[0, 0], [1.8, 0]]\n", alike),
               HasSubstr("rope.places_nm: has 2 places, and the rope has 3 tubes; write tubes = 2"));
-  EXPECT_THAT(message("tubes = 2\nlength_nm = 6\nplaces_nm = [[0, 0], [1, 0]]\n"),
-              HasSubstr("has the tubes 0 and 1 1 nm apart"));
-  EXPECT_THAT(message("tubes = 1\npacking = \"round\"\nlength_nm = 6\nplaces_nm = [[0, 0]]\n"),
+  EXPECT_THAT(
+      message("tubes = 2\nlength_nm = 6\nplaces_nm = [[0, 0], [1, 0]]\n", alike),
+      ::testing::AllOf(HasSubstr("rope.places_nm: elements "), HasSubstr("overlap: their axes are 1 nm apart")));
+  // A wide tube and a narrow one: the axes are nearer than two wide tubes may be, or one is inside of the other.
+  EXPECT_EQ(message("tubes = 2\nplaces_nm = [[0, 0], [1.2, 0]]\n", unlike), "none");
+  EXPECT_THAT(message("tubes = 2\nplaces_nm = [[0, 0], [0, 0]]\n", unlike),
+              HasSubstr("rope.places_nm: tubes 0 and 1 lie inside of one another"));
+  EXPECT_THAT(message("tubes = 1\npacking = \"round\"\nlength_nm = 6\nplaces_nm = [[0, 0]]\n", alike),
               HasSubstr("stands beside packing"));
 }
 

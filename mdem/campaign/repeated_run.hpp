@@ -1,0 +1,30 @@
+// A run once more, with other texts of its inputs, in a directory below `errors` of the first.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "run/run_directory.hpp"
+
+namespace ropewalk {
+
+struct RunInputs {
+  std::string scene;
+  std::vector<std::string> sets, files;  // texts, of the tube types and of the drives
+};
+// Those that a run was made with.
+RunInputs inputs_of(const RunDirectory& run, const Scene& scene);
+
+// The scene with its time step typed, and without frames between the first and the last.
+std::string repeatable_scene(const std::string& text, const Scene& scene, const Prepared& prepared);
+
+// The scene of these inputs, read from a folder, where the run `base` has its state file.
+Scene scene_of(const RunInputs& inputs, const RunDirectory& base, const Scene& scene, const std::string& folder);
+
+// Runs them in the directory errors/NAME of `base`. A run of the same inputs that was begun goes on, one that is
+// finished stays, unless `again` is set; one of other inputs is replaced. Returns its exit code; that it was not as
+// its scene expects is no failure.
+int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& name, const RunInputs& inputs,
+               bool again);
+
+}  // namespace ropewalk

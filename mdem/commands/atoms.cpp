@@ -1,0 +1,152 @@
+// `atoms`: elements as atoms.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "exchange/atoms_of_state.hpp"
+#include "io/files.hpp"
+#include "io/plain_text.hpp"
+#include "model/error.hpp"
+#include "scene/kinds/state.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "0-18,20"
+std::vector<int> tubes_of(const std::string& text) {
+  std::vector<int> tubes;
+  const auto fail = [&] {
+    throw InputError({"", 0, "--tubes"}, fmt::format("\"{}\" names no tubes", printable(text, 40)),
+                     "write numbers from 0 and ranges, as 0-18,20");
+  };
+  const char* at = text.c_str();
+  while (*at != '\0') {
+    char* end = nullptr;
+    const long first = std::strtol(at, &end, 10);
+    if (end == at || first < 0) fail();
+    long last = first;
+    if (*end == '-') {
+      at = end + 1;
+      last = std::strtol(at, &end, 10);
+      if (end == at) fail();
+    }
+    if (last < first || last - first > 1000000 || (*end != ',' && *end != '\0')) fail();
+    for (long t = first; t <= last; ++t) tubes.push_back(static_cast<int>(t));
+    at = *end == ',' ? end + 1 : end;
+    if (*end == ',' && *at == '\0') fail();
+  }
+  return tubes;
+}
+
+// "20,40"
+void set_between(const std::string& text, AtomSelection& selection) {
+  if (text.empty()) return;
+  std::size_t read = 0, rest = 0;
+  const std::optional<double> from = leading_number(text, &read);
+  const std::string behind = from && read < text.size() && text[read] == ',' ? text.substr(read + 1) : "";
+  const std::optional<double> to = leading_number(behind, &rest);
+  if (!from || !to || rest != behind.size() || !(*from < *to))
+    throw InputError({"", 0, "--between"}, fmt::format("\"{}\" is no stretch of a tube", printable(text, 40)),
+                     "write two rising numbers of nm, as 20,40");
+  selection.from_nm = *from;
+  selection.to_nm = *to;
+}
+
+bool is_run(const std::string& path) { return fs::is_directory(path); }
+
+void refuse_what_does_not_fit(const AtomsArguments& a, AtomFormat format) {
+  const auto refuse = [](const char* option, const char* what, const char* remedy) {
+    throw InputError({"", 0, option}, what, remedy);
+  };
+  if (!is_run(a.path)) {
+    if (!fs::exists(a.path)) throw InputError({a.path, 0, ""}, "is not there", "name a run or a state file");
+    if (a.state.parameters.empty())
+      refuse("--parameters", "is missing, which a state file needs", "name the set that its elements are of");
+    if (!a.at.empty()) refuse("--at", "needs the directory of a run", "a state file has no limits");
+  } else if (!a.state.parameters.empty()) {
+    refuse("--parameters", "is of a state file, and this is a run", "take it away: a run has its own sets");
+  }
+  if (a.relax && format != AtomFormat::lammps_data)
+    refuse("--relax", "needs a file for LAMMPS", "let the name behind -o end in .data");
+}
+
+void print_comparison(const std::vector<PartComparison>& parts) {
+  fmt::print("energies, eV, of the free atoms against a straight tube at rest that was relaxed alike\n");
+  fmt::print("{:>5} {:>9} {:>8} {:>13} {:>13} {:>13} {:>13} {:>13}\n", "tube", "elements", "free", "model: bonds",
+             "contact", "sum", "atoms placed", "atoms relaxed");
+  PartComparison sum;
+  for (const PartComparison& p : parts) {
+    fmt::print("{:>5} {:>9} {:>8} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g}\n", p.part.tube,
+               fmt::format("{}-{}", p.part.begin, p.part.end - 1), p.atoms, p.bonds, p.contact, p.bonds + p.contact,
+               p.placed, p.relaxed);
+    sum.atoms += p.atoms;
+    sum.bonds += p.bonds;
+    sum.contact += p.contact;
+    sum.placed += p.placed;
+    sum.relaxed += p.relaxed;
+  }
+  fmt::print("{:>5} {:>9} {:>8} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g}\n", "all", "", sum.atoms,
+             sum.bonds, sum.contact, sum.bonds + sum.contact, sum.placed, sum.relaxed);
+}
+
+nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {
+  auto list = nlohmann::ordered_json::array();
+  for (const PartComparison& p : parts)
+    list.push_back({{"tube", p.part.tube},
+                    {"first_element", p.part.begin},
+                    {"last_element", p.part.end - 1},
+                    {"free_atoms", p.atoms},
+                    {"model_bonds_eV", p.bonds},
+                    {"model_contact_eV", p.contact},
+                    {"atoms_placed_eV", p.placed},
+                    {"atoms_relaxed_eV", p.relaxed}});
+  return list;
+}
+
+}  // namespace
+
+int atoms_command(const AtomsArguments& a) {
+  const AtomFormat format = atom_format_of(a.out);
+  refuse_what_does_not_fit(a, format);
+  for (const char* end : {"", "-elements.csv", "-relax.in", "-relaxed.data"}) {
+    const std::string stem = (fs::path(a.out).parent_path() / fs::path(a.out).stem()).string();
+    refuse_existing(*end ? stem + end : a.out, "-o", a.force);
+  }
+  AtomSelection selection;
+  selection.tubes = tubes_of(a.tubes);
+  set_between(a.between, selection);
+  long frame = a.frame;
+  if (!a.at.empty()) {
+    const LimitPlace place = place_of_limit({a.path}, a.at);
+    frame = place.frame;
+    selection.around_tube = place.tube;
+    selection.around_element = place.element;
+    selection.around_nm = a.length;
+    const std::string when =
+        place.before_ps > 0 ? fmt::format("{:.4g} ps before that", place.before_ps) : std::string("of that moment");
+    fmt::print(stderr, "note: {}; frame {} is {}\n", place.words, place.frame, when);
+  }
+  SingleState single = a.state;
+  if (!is_run(a.path)) single.source = std::make_shared<StateSource>(a.path);
+  const AtomicState s = is_run(a.path) ? state_of_frame({a.path}, frame) : state_of_file(single, a.path);
+  const std::vector<TubePart> parts = selected_parts(s, selection);
+  const WrittenAtoms written = write_atoms_of(s, parts, a.out, a.potential);
+  fmt::print(a.json ? stderr : stdout, "{} written: {} atoms of {} tube{}, {}\n", fmt::join(written.files, ", "),
+             written.atoms, parts.size(), parts.size() == 1 ? "" : "s", s.title);
+  if (!written.not_relaxable.empty() && format == AtomFormat::lammps_data)
+    fmt::print(stderr, "note: no input of LAMMPS was written: {}\n", written.not_relaxable);
+  if (!a.relax) return 0;
+  const std::vector<PartComparison> found = compare_with_atoms(s, parts, written, a.out, a.potential, {});
+  if (a.json)
+    fmt::print("{}\n", as_json(found).dump(1));
+  else
+    print_comparison(found);
+  return 0;
+}
+
+}  // namespace ropewalk

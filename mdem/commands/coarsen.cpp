@@ -1,0 +1,80 @@
+// `coarsen`: atoms as elements.
+#include "exchange/coarsen.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "io/files.hpp"
+#include "model/error.hpp"
+#include "run/terminal_listener.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk {
+namespace {
+
+nlohmann::ordered_json as_json(const Coarsening& coarse) {
+  auto list = nlohmann::ordered_json::array();
+  for (const CoarseTube& t : coarse.tubes())
+    list.push_back({{"n", t.chirality.n},
+                    {"m", t.chirality.m},
+                    {"elements", t.elements},
+                    {"atoms", t.atoms},
+                    {"atoms_in_no_element", t.without_site},
+                    {"endless", t.endless},
+                    {"cap_first", t.cap_below},
+                    {"cap_last", t.cap_above},
+                    {"pentagons", t.pentagons},
+                    {"heptagons", t.heptagons},
+                    {"atoms_beside_holes", t.open_atoms},
+                    {"atoms_with_four_bonds", t.crowded},
+                    {"radius_nm", t.radius},
+                    {"misfit_nm", t.misfit}});
+  return {{"tubes", std::move(list)},
+          {"carbon_in_no_tube", coarse.loose()},
+          {"other_atoms", coarse.foreign()},
+          {"element_length_nm", coarse.topology().types.front().element_length}};
+}
+
+void tell_tubes(const Coarsening& coarse) {
+  for (std::size_t t = 0; t < coarse.tubes().size(); ++t)
+    fmt::print("tube {}: {}\n", t, words_of(coarse.tubes()[t]));
+  if (coarse.loose() > 0) fmt::print("{} carbon atoms in no tube\n", coarse.loose());
+  if (coarse.foreign() > 0) fmt::print("{} atoms of other species\n", coarse.foreign());
+}
+
+}  // namespace
+
+int coarsen_command(const CoarsenArguments& a) {
+  if (a.out.empty() && a.state.empty())
+    throw InputError({"", 0, "-o"}, "is missing", "name the directory of a run, or a state file by --state");
+  if (!a.state.empty()) refuse_existing(a.state, "--state", a.force);
+  const CoarsenSettings settings{a.files, a.parameters, a.element_length, a.time_step_fs};
+  TerminalListener terminal(a.quiet);
+  Coarsening coarse(settings);
+  const bool timed = coarse.states_time();
+  if (a.json)
+    fmt::print("{}\n", as_json(coarse).dump(1));
+  else if (!a.quiet)
+    tell_tubes(coarse);
+  std::FILE* to = a.json ? stderr : stdout;
+  if (!a.state.empty()) {
+    while (coarse.next()) {
+    }
+    write_file_atomically(a.state, state_csv(coarse.topology(), coarse.state()));
+    fmt::print(to, "{} written: {} elements\n", a.state, coarse.topology().elements());
+    return 0;
+  }
+  const CoarseRun run = write_coarse_run(coarse, settings, {a.out}, a.force, terminal);
+  if (coarse.cut_off()) terminal.tell("note: the last frame is cut off and was left out");
+  if (!timed && run.frames > 1)
+    terminal.tell(fmt::format("note: the dump states no time: its steps are taken for {:g} fs, see --time-step-fs",
+                              a.time_step_fs));
+  fmt::print(to, "{} written: {} frame{} up to {:.6g} ps. Go on with: ropewalk report {}\n", a.out, run.frames,
+             run.frames == 1 ? "" : "s", run.time, a.out);
+  if (!run.passed.empty()) fmt::print(to, "Limits passed: {}\n", run.passed);
+  return 0;
+}
+
+}  // namespace ropewalk

@@ -1,0 +1,257 @@
+#include "exchange/atoms_of_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <tuple>
+
+#include "io/files.hpp"
+#include "io/frames/frames.hpp"
+#include "io/limits_file.hpp"
+#include "io/removal.hpp"
+#include "run/colours.hpp"
+
+namespace ropewalk {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string beside(const std::string& path, const char* ending) {
+  return (fs::path(path).parent_path() / (fs::path(path).stem().string() + ending)).string();
+}
+
+std::vector<TubeReference> references_of(const std::vector<ParameterSet>& sets) {
+  std::vector<TubeReference> out;
+  for (const ParameterSet& set : sets) out.push_back(reference_of(set));
+  return out;
+}
+
+std::size_t index_of(const Topology& topology, int tube, int element) {
+  return static_cast<std::size_t>(topology.tube_begin[static_cast<std::size_t>(tube)] + element);
+}
+
+// The ends of each part, and elements that the run holds.
+bool is_held(const AtomicState& s, const TubePart& part, int element) {
+  return element == part.begin || element + 1 == part.end || s.held[index_of(s.topology, part.tube, element)];
+}
+
+std::vector<AtomRange> held_atoms(const AtomicState& s, const std::vector<TubePart>& parts,
+                                  const std::vector<AtomRange>& ranges) {
+  std::vector<AtomRange> held;
+  for (const AtomRange& range : ranges)
+    if (is_held(s, parts[static_cast<std::size_t>(range.part)], range.element)) held.push_back(range);
+  return held;
+}
+
+// Energies of the model, of these parts alone and without the elements that are held.
+void add_model_energies(const AtomicState& s, std::vector<PartComparison>& parts) {
+  Topology topology;
+  topology.types = s.topology.types;
+  std::vector<std::size_t> from;
+  for (const PartComparison& p : parts) {
+    topology.add_tube(p.part.elements(), s.topology.tube_type[static_cast<std::size_t>(p.part.tube)]);
+    for (int e = p.part.begin; e < p.part.end; ++e) from.push_back(index_of(s.topology, p.part.tube, e));
+  }
+  State state(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    state.position.set(i, s.state.position[from[i]]);
+    state.orientation.set(i, s.state.orientation[from[i]]);
+  }
+  const ElementColours energies = element_colours(topology, s.interaction, state);
+  std::size_t i = 0;
+  for (PartComparison& p : parts)
+    for (int e = p.part.begin; e < p.part.end; ++e, ++i) {
+      if (is_held(s, p.part, e)) continue;
+      p.bonds += energies.bond_energy[i];
+      p.contact += energies.vdw_energy[i];
+    }
+}
+
+// Energy (eV) of the atoms of a part where the tube is straight and at rest, relaxed alike.
+double energy_at_rest(const AtomicState& s, const TubePart& part, const AtomForces& forces,
+                      const std::string& folder, const LammpsOptions& options) {
+  AtomicState rest;
+  rest.sets = s.sets;
+  rest.topology.types = s.topology.types;
+  rest.topology.add_tube(part.end, s.topology.tube_type[static_cast<std::size_t>(part.tube)]);
+  rest.state = State(static_cast<std::size_t>(part.end));
+  rest.held.assign(rest.state.size(), 0);
+  for (int e = part.begin; e < part.end; ++e)
+    rest.held[static_cast<std::size_t>(e)] = s.held[index_of(s.topology, part.tube, e)];
+  const double a = s.topology.type_of(part.tube).element_length;
+  for (int e = 0; e < part.end; ++e)
+    rest.state.position.set(static_cast<std::size_t>(e), Vector3(0, 0, (e + 0.5) * a));
+  const std::vector<TubePart> parts = {{0, part.begin, part.end}};
+  const AtomsOfElements atoms(rest.topology, rest.state, references_of(rest.sets), parts);
+  const std::vector<AtomRange> ranges =
+      write_atoms(folder + "/rest.data", AtomFormat::lammps_data, atoms, "straight tube", 0);
+  return relax_atoms(folder, "rest", forces, 1, held_atoms(rest, parts, ranges), options).front().after;
+}
+
+}  // namespace
+
+AtomicState state_of_frame(const RunDirectory& dir, long frame) {
+  Scene scene = read_run_scene(dir);
+  const Prepared prepared = prepare(scene);
+  const auto frames = open_frames(dir.frames());
+  const auto count = static_cast<long>(frames->count(prepared.topology));
+  const long wanted = frame < 0 ? count + frame : frame;
+  if (wanted < 0 || wanted >= count)
+    throw InputError(
+        {dir.frames(), 0, "--frame"}, fmt::format("there is no frame {}: there are {}", frame, count),
+        count > 0 ? fmt::format("frames run from 0 to {}; -1 is the last", count - 1) : "let the run write one");
+  frames->seek(static_cast<std::size_t>(wanted));
+  StoredFrame stored;
+  frames->next(prepared.topology, stored);
+  AtomicState out;
+  out.sets = scene.sets;
+  out.topology = prepared.topology;
+  out.state = stored.state;
+  out.interaction = prepared.interaction;
+  out.held.assign(stored.state.size(), 0);
+  for (const std::vector<int>& end : ends_of(prepared.loads, prepared.topology))
+    for (const int e : end) out.held[static_cast<std::size_t>(e)] = 1;
+  out.title = fmt::format("{} at {:.6g} ps", scene.name, stored.state.time);
+  return out;
+}
+
+AtomicState state_of_file(const SingleState& state, const std::string& path) {
+  EvaluatedState found = evaluate(state);
+  AtomicState out;
+  out.sets = std::move(found.sets);
+  out.topology = std::move(found.built.topology);
+  out.state = std::move(found.built.state);
+  out.interaction = std::move(found.interaction);
+  out.held.assign(out.state.size(), 0);
+  out.title = fs::path(path).filename().string();
+  return out;
+}
+
+LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit) {
+  const std::vector<LimitRecord> limits = read_limits(dir.limits()).limits;
+  const auto known =
+      std::find_if(limits.begin(), limits.end(), [&](const LimitRecord& r) { return r.key == limit; });
+  if (known == limits.end() || !known->passed) {
+    std::string passed;
+    for (const LimitRecord& r : limits)
+      if (r.passed) passed += (passed.empty() ? "" : ", ") + r.key;
+    const std::string remedy = passed.empty() ? "no limit was: name a frame by --frame" : "passed were: " + passed;
+    if (known == limits.end())
+      throw InputError({dir.limits(), 0, "--at"}, fmt::format("there is no limit \"{}\"", limit), remedy);
+    throw InputError({dir.limits(), 0, "--at"}, fmt::format("{} was not passed", limit), remedy);
+  }
+  Scene scene = read_run_scene(dir);
+  const Prepared prepared = prepare(scene);
+  LimitPlace place;
+  place.frame = -1;
+  place.tube = known->passed_tube;
+  place.element = known->passed_element;
+  const auto frames = open_frames(dir.frames());
+  StoredFrame stored;
+  for (long k = 0; frames->next(prepared.topology, stored); ++k) {
+    if (stored.state.step > known->passed_at_step) break;
+    place.frame = k;
+    place.before_ps = known->passed_at_ps - stored.state.time;
+  }
+  if (place.frame < 0)
+    throw InputError({dir.frames(), 0, "--at"}, "has no frame before the limit was passed",
+                     "run it again with a shorter run.frames_every_ps");
+  const std::string at = place_words(*known);
+  place.words = fmt::format("{} is passed {}{}", known->key, since_words(*known), at.empty() ? "" : ": " + at);
+  return place;
+}
+
+std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& selection) {
+  for (const int t : selection.tubes)
+    if (t < 0 || t >= s.topology.tubes())
+      throw InputError({"", 0, "--tubes"}, fmt::format("there is no tube {}", t),
+                       fmt::format("tubes run from 0 to {}", s.topology.tubes() - 1));
+  std::vector<TubePart> parts;
+  for (int t = 0; t < s.topology.tubes(); ++t) {
+    if (!selection.tubes.empty() &&
+        std::find(selection.tubes.begin(), selection.tubes.end(), t) == selection.tubes.end())
+      continue;
+    const double a = s.topology.type_of(t).element_length;
+    bool before = false;
+    for (int e = 0; e < s.topology.length_of(t); ++e) {
+      const double along = (e + 0.5) * a;
+      bool wanted =
+          (!selection.from_nm || along >= *selection.from_nm) && (!selection.to_nm || along <= *selection.to_nm);
+      if (wanted && selection.around_tube >= 0) {
+        const Vector3 place =
+            s.state.position[index_of(s.topology, selection.around_tube, selection.around_element)];
+        wanted = (s.state.position[index_of(s.topology, t, e)] - place).norm() <= 0.5 * selection.around_nm;
+      }
+      if (wanted && before)
+        parts.back().end = e + 1;
+      else if (wanted)
+        parts.push_back({t, e, e + 1});
+      before = wanted;
+    }
+  }
+  if (parts.empty())
+    throw InputError({"", 0, ""}, "no element was asked for", "look at --tubes, --between and --length");
+  return parts;
+}
+
+WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& parts, const std::string& path,
+                            const std::string& potential) {
+  const AtomFormat format = atom_format_of(path);
+  const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts);
+  WrittenAtoms out;
+  std::optional<AtomForces> forces;
+  try {
+    if (format == AtomFormat::lammps_data) forces = atom_forces(s.sets, potential);
+  } catch (const InputError& e) {
+    if (!potential.empty()) throw;
+    out.not_relaxable = e.what();
+  }
+  out.ranges = write_atoms(path, format, atoms, s.title, s.state.time);
+  out.atoms = out.ranges.back().last;
+  std::string table = "tube,element,first_atom,last_atom\n";
+  for (const AtomRange& r : out.ranges) table += fmt::format("{},{},{},{}\n", r.tube, r.element, r.first, r.last);
+  out.files = {path, beside(path, "-elements.csv")};
+  write_file_atomically(out.files.back(), table);
+  if (!forces) return out;
+  out.files.push_back(beside(path, "-relax.in"));
+  write_file_atomically(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
+                                                      held_atoms(s, parts, out.ranges)));
+  return out;
+}
+
+std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::vector<TubePart>& parts,
+                                               const WrittenAtoms& written, const std::string& path,
+                                               const std::string& potential, const LammpsOptions& options) {
+  const AtomForces forces = atom_forces(s.sets, potential);
+  std::vector<PartComparison> out;
+  for (const TubePart& part : parts) out.push_back({part});
+  for (const AtomRange& r : written.ranges)
+    if (const auto part = static_cast<std::size_t>(r.part); !is_held(s, parts[part], r.element))
+      out[part].atoms += r.last - r.first + 1;
+  add_model_energies(s, out);
+  const fs::path place = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  const TemporaryFolder work(place.string());
+  write_file_atomically(work.file("atoms.data"), read_file(path));
+  const std::vector<PartEnergies> found =
+      relax_atoms(work.path(), "atoms", forces, parts.size(), held_atoms(s, parts, written.ranges), options);
+  write_file_atomically(beside(path, "-relaxed.data"), read_file(work.file("atoms-relaxed.data")));
+  // Parts with the same sites, held alike, have the same energy at rest.
+  std::map<std::tuple<int, int, int, std::vector<char>>, double> at_rest;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    std::vector<char> held;
+    for (int e = parts[p].begin; e < parts[p].end; ++e)
+      held.push_back(s.held[index_of(s.topology, parts[p].tube, e)]);
+    const std::tuple key(s.topology.tube_type[static_cast<std::size_t>(parts[p].tube)], parts[p].begin,
+                         parts[p].end, held);
+    if (at_rest.find(key) == at_rest.end())
+      at_rest[key] = energy_at_rest(s, parts[p], forces, work.path(), options);
+    out[p].placed = found[p].before - at_rest[key];
+    out[p].relaxed = found[p].after - at_rest[key];
+  }
+  return out;
+}
+
+}  // namespace ropewalk

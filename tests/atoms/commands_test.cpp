@@ -1,0 +1,212 @@
+// `ropewalk atoms` and `ropewalk coarsen` as a user types them.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "atoms/atom_files.hpp"
+#include "atoms/support.hpp"
+#include "cli/support.hpp"
+#include "exchange/coarsen.hpp"
+#include "outputs_page.hpp"
+#include "scene/state_csv.hpp"
+
+namespace ropewalk::test {
+namespace {
+namespace UNIT {
+
+TEST(OutputsPageOfAtoms, HasTheTableOfSections) {
+  EXPECT_EQ(outputs_table("`sections.csv`"), columns_markdown(section_columns()));
+}
+
+// Seven tubes of the kind that the model twists, wound a little.
+const char* const twisted_rope = R"(format = "ropewalk-scene-1"
+parameters = "cnt-5-5-tersoff"
+[rope]
+tubes = 7
+length_nm = 7
+[twist]
+moment_nN_nm = 1
+rate_nN_nm_per_ps = 1
+hold_ps = 2
+[run]
+frames_every_ps = 1
+)";
+
+class Bridge : public Cli {
+ protected:
+  void make_run() {
+    spit(dir / "rope.toml", twisted_rope);
+    const Outcome made = run("run rope.toml --out made --threads 1 --quiet");
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  State state(const char* file) const {
+    Topology topology;
+    topology.types[0].element_length = state_element_length((dir / file).string());
+    State out;
+    read_state_csv((dir / file).string(), topology, out);
+    return out;
+  }
+};
+
+TEST_F(Bridge, ARunBecomesAtomsAndTheAtomsTheSameState) {
+  make_run();
+  const Outcome atoms = run("atoms made -o rope.data");
+  ASSERT_EQ(atoms.code, 0) << atoms.err;
+  EXPECT_NE(atoms.out.find("rope-relax.in"), std::string::npos);
+  const Outcome coarse = run("coarsen rope.data --state again.csv");
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  EXPECT_NE(coarse.out.find("tube 6: (5,5), "), std::string::npos) << coarse.out;
+  // The order of the tubes is that of their places: each one of the run is there, with every element.
+  const State before = state("made/final.csv"), after = state("again.csv");
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    double nearest = 1e9, turn = 1e9;
+    for (std::size_t j = 0; j < after.size(); ++j) {
+      const double d = (before.position[i] - after.position[j]).norm();
+      if (d > nearest) continue;
+      nearest = d;
+      const double angle =
+          (before.orientation[i].conjugate() * after.orientation[j]).angularDistance(Quaternion::Identity());
+      turn = std::fabs(std::remainder(angle, 2 * units::pi / 5));
+    }
+    EXPECT_LT(nearest, 1e-3);
+    EXPECT_LT(turn, 1e-3);
+  }
+  // And the same energies, so that a scene can go on from it.
+  const auto energy = [&](const std::string& file) {
+    const Outcome found = run("energy " + file + " --parameters cnt-5-5-tersoff --json --threads 1");
+    EXPECT_EQ(found.code, 0) << found.err;
+    return nlohmann::json::parse(found.out)["energy_eV"]["total"].get<double>();
+  };
+  EXPECT_NEAR(energy("made/final.csv"), energy("again.csv"), 1e-3);
+}
+
+TEST_F(Bridge, FramesOfAtomsBecomeARun) {
+  make_run();
+  std::string all;
+  for (int frame = 0; frame < 4; ++frame) {
+    ASSERT_EQ(run(fmt::format("atoms made --frame {} -o f.xyz --force", frame)).code, 0);
+    all += slurp(dir / "f.xyz");
+  }
+  spit(dir / "md.xyz", all);
+  const Outcome coarse = run("coarsen md.xyz -o coarse");
+  ASSERT_EQ(coarse.code, 0) << coarse.err;
+  EXPECT_NE(coarse.out.find("4 frames"), std::string::npos);
+  EXPECT_NE(slurp(dir / "coarse/sections.csv").find("ovality_nm"), std::string::npos);
+  for (const char* verb : {"observe coarse", "report coarse", "view coarse --force", "compare coarse made --force",
+                           "convert coarse x.lammpstrj", "atoms coarse -o again.data"}) {
+    const Outcome done = run(verb);
+    EXPECT_EQ(done.code, 0) << verb << ": " << done.err;
+  }
+  // What the run has in its last frame, the atoms have as well.
+  const auto last = [&](const char* verb) { return nlohmann::json::parse(run(verb).out).back(); };
+  const nlohmann::json of_atoms = last("observe coarse --json"), of_run = last("observe made --json");
+  EXPECT_NEAR(of_atoms["time_ps"].get<double>(), of_run["time_ps"].get<double>(), 1e-6);
+  EXPECT_GT(of_run["beta_deg"].get<double>(), 1);
+  for (const char* name : {"beta_deg", "ends_apart_nm", "most_curvature_per_nm"})
+    EXPECT_NEAR(of_atoms[name].get<double>(), of_run[name].get<double>(), 0.01) << name;
+  EXPECT_NE(run("errors coarse").err.find("taken from atoms"), std::string::npos) << "there is nothing to repeat";
+  EXPECT_EQ(run("resume coarse").code, 2) << "there is nothing to resume";
+  const std::string rows = slurp(dir / "coarse/log.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 5);
+}
+
+TEST_F(Bridge, PartsOfARunAreWrittenAlone) {
+  make_run();
+  const Outcome part = run("atoms made -o part.xyz --tubes 0,2-3 --between 2,5");
+  ASSERT_EQ(part.code, 0) << part.err;
+  const AtomFrame frame = [&] {
+    AtomFiles files({(dir / "part.xyz").string()}, 1);
+    AtomFrame read;
+    files.next(read);
+    return read;
+  }();
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  EXPECT_NEAR(static_cast<double>(frame.positions.size()), 3 * 3 * set.atoms_per_length,
+              3 * set.element_length * set.atoms_per_length);
+  const std::string table = slurp(dir / "part-elements.csv");
+  EXPECT_EQ(table.substr(0, table.find('\n')), "tube,element,first_atom,last_atom");
+}
+
+TEST_F(Bridge, BadInputIsOneLine) {
+  make_run();
+  spit(dir / "water.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n");
+  const std::pair<const char*, const char*> cases[] = {
+      {"atoms made -o a.pdb", "a.pdb: -o: ends in none of"},
+      {"atoms made -o a.data --tubes 9", "there is no tube 9"},
+      {"atoms made -o a.data --tubes 1-", "names no tubes"},
+      {"atoms made -o a.data --between 3", "no stretch of a tube"},
+      {"atoms made -o a.data --between 300,400", "no element was asked for"},
+      {"atoms made -o a.data --frame 99", "there is no frame 99"},
+      {"atoms made -o a.data --at wall_twist", "was not passed"},
+      {"atoms made -o a.data --at colour", "there is no limit"},
+      {"atoms made/final.csv -o a.data", "--parameters: is missing"},
+      {"atoms made -o a.xyz --relax", "needs a file for LAMMPS"},
+      {"atoms made -o a.data --potential tersof", "did you mean 'tersoff'"},
+      {"coarsen water.xyz -o w", "has no carbon nanotube"},
+      {"coarsen rope.toml -o w", "no file of atoms"},
+      {"coarsen water.xyz", "-o: is missing"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome failed = run(arguments);
+    EXPECT_EQ(failed.code, 2) << arguments;
+    EXPECT_NE(failed.err.find(message), std::string::npos) << arguments << ": " << failed.err;
+    EXPECT_EQ(std::count(failed.err.begin(), failed.err.end(), '\n'), 1) << failed.err;
+  }
+}
+
+// A warm tube shows the stiffness of its own set.
+TEST_F(Bridge, AWarmTubeShowsItsStiffness) {
+  spit(dir / "warm.toml", R"(format = "ropewalk-scene-1"
+parameters = "cnt-5-5-tersoff"
+[chain]
+elements = 24
+[thermostat]
+temperature_K = 300
+coupling_per_ps = 5
+[damping]
+contact_viscosity_eV_ps_per_nm3 = 0
+bond_damping_per_ps = 0
+[run]
+duration_ps = 60
+frames_every_ps = 0.2
+)");
+  const Outcome made = run("run warm.toml --out warm --threads 1 --quiet");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome found = run("calibrate fluctuations warm --after 4 --json --out again.toml");
+  ASSERT_EQ(found.code, 0) << found.err;
+  const auto result = nlohmann::json::parse(found.out).at(0);
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  const auto& window = result["windows"][0];
+  for (const auto& [name, is] : {std::pair{"EA (nN)", set.bond.stretch}, std::pair{"EI_x (nN nm^2)", set.bond.bend},
+                                 std::pair{"GJ (nN nm^2)", set.bond.twist}}) {
+    const double value = window[name]["value"], error = window[name]["standard_error"], nN = units::eV_in_nN_nm;
+    EXPECT_LT(std::fabs(value - is * nN), 4 * error) << name;
+    EXPECT_LT(error, 0.1 * is * nN) << name;
+  }
+  EXPECT_NEAR(read_parameters((dir / "again.toml").string()).bond.twist * units::eV_in_nN_nm,
+              result["rod"]["GJ (nN nm^2)"]["value"].get<double>(), 1e-9);
+  EXPECT_NE(run("calibrate fluctuations warm --after 4").out.find("ratio"), std::string::npos);
+  EXPECT_NE(run("calibrate fluctuations warm --after 59").err.find("16 are needed"), std::string::npos);
+}
+
+// States below the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
+TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
+  const double a = shipped("cnt-5-5-tersoff").element_length;
+  for (const RodShape& shape : {RodShape{0.01, 0, 0}, RodShape{0, 0.06, 0}, RodShape{0, 0, 0.15}}) {
+    const Elements rod10 = rod(10, a, shape);
+    spit(dir / "state.csv", state_csv(rod10.topology, rod10.state));
+    const Outcome relaxed = run("atoms state.csv --parameters cnt-5-5-tersoff -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    const auto part = nlohmann::json::parse(relaxed.out).at(0);
+    const double model = part["model_bonds_eV"], atoms = part["atoms_relaxed_eV"], placed = part["atoms_placed_eV"];
+    EXPECT_GT(model, 0.5);
+    EXPECT_NEAR(atoms / model, 1, 0.05);
+    EXPECT_GT(placed, atoms);
+    EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  }
+}
+
+}  // namespace UNIT
+}  // namespace
+}  // namespace ropewalk::test

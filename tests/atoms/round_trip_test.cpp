@@ -1,0 +1,163 @@
+// Elements become atoms, the atoms are found as tubes without their order, and give the same elements.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "atoms/support.hpp"
+#include "atoms/tube_reference.hpp"
+
+namespace ropewalk {
+namespace {
+namespace UNIT {
+
+using namespace test;
+
+// The largest distance and turn of two states, where the sections of the second may all be turned by one of g equal
+// parts of a turn, which changes no atom.
+struct Difference {
+  double distance = 0, turn = 0;
+};
+Difference difference(const State& a, const State& b, int g) {
+  Difference best{1e9, 1e9};
+  for (int k = 0; k < g; ++k) {
+    const Quaternion part(Eigen::AngleAxisd(2 * units::pi * k / g, Vector3::UnitZ()));
+    Difference here;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      here.distance = std::max(here.distance, (a.position[i] - b.position[i]).norm());
+      here.turn = std::max(here.turn, a.orientation[i].angularDistance(b.orientation[i] * part));
+    }
+    if (here.turn < best.turn) best = here;
+  }
+  return best;
+}
+
+// The elements that are found in the atoms of a state.
+State found_again(const Elements& rod, const TubeReference& reference, unsigned seed, double noise = 0) {
+  std::vector<Vector3> atoms = atoms_of(rod, reference);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, noise);
+  if (noise > 0)
+    for (Vector3& x : atoms) x += Vector3(normal(random), normal(random), normal(random));
+  std::shuffle(atoms.begin(), atoms.end(), random);
+  const FoundTubes found = found_in(atoms);
+  EXPECT_EQ(found.tubes.size(), 1u);
+  const int n = rod.topology.length_of(0);
+  const ElementFit fit(reference, rod.topology.types[0].element_length, n, found.tubes[0].atoms);
+  State state(static_cast<std::size_t>(n));
+  fit.fit(found.positions, state, 0);
+  return state;
+}
+
+class RoundTrip : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RoundTrip, GivesTheElementsUpToTheLimitsOfTheSet) {
+  const ParameterSet set = shipped(GetParam());
+  const TubeReference reference = reference_of(set);
+  const double a = set.element_length;
+  const int g = std::gcd(set.chirality.n, set.chirality.m);
+  for (const double part : {0.0, 0.5, 1.0}) {
+    const double twist = part * set.validity.twist_collapse / set.radius, bend = part * set.validity.kink_curvature,
+                 strain = part * set.validity.stretch;
+    for (const RodShape& shape :
+         {RodShape{strain, 0, 0}, RodShape{-strain, 0, 0}, RodShape{0, twist, 0}, RodShape{0, -twist, 0},
+          RodShape{0, 0, bend}, RodShape{0.5 * strain, twist, bend}}) {
+      const Elements before = rod(8, a, shape);
+      const Difference d = difference(before.state, found_again(before, reference, 7), g);
+      EXPECT_LT(d.distance, 1e-3) << "at " << part << " of the limits";
+      EXPECT_LT(d.turn, 1e-3) << "at " << part << " of the limits";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, RoundTrip,
+                         ::testing::Values("cnt-5-5-tersoff", "cnt-10-10-tersoff", "cnt-17-0-tersoff",
+                                           "cnt-12-6-tersoff", "cnt-8-2-tersoff"));
+
+// Twist and bend that change from bond to bond, and sheared sections: what no element alone shows.
+TEST(RoundTripOfElements, GivesElementsThatAreAllDifferent) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  Elements before = rod(12, set.element_length, {});
+  for (std::size_t i = 0; i < before.state.size(); ++i) {
+    before.state.position.set(
+        i, before.state.position[i] + 0.02 * Vector3(normal(random), normal(random), normal(random)));
+    Vector3 turn = 0.03 * Vector3(normal(random), normal(random), normal(random));
+    before.state.orientation.set(i, Quaternion(Eigen::AngleAxisd(turn.norm(), turn.normalized())));
+  }
+  const Difference d = difference(before.state, found_again(before, reference_of(set), 5), 10);
+  EXPECT_LT(d.distance, 1e-5);
+  EXPECT_LT(d.turn, 1e-5);
+}
+
+// Upside down a tube has its other sublattice below: it keeps all of its elements.
+TEST(RoundTripOfElements, KeepsTheElementsOfATubeThatIsUpsideDown) {
+  for (const char* name : {"cnt-17-0-tersoff", "cnt-12-6-tersoff", "cnt-9-0-tersoff"}) {
+    const ParameterSet set = shipped(name);
+    Elements rod8 = rod(8, set.element_length, {});
+    std::vector<Vector3> atoms = atoms_of(rod8, reference_of(set));
+    for (Vector3& x : atoms) x = Vector3(x.x(), -x.y(), -x.z());
+    const FoundTubes found = found_in(atoms);
+    ASSERT_EQ(found.tubes.size(), 1u);
+    EXPECT_EQ(found.tubes[0].without_site, 0) << name;
+    const ElementFit fit(reference_of(set), set.element_length, 8, found.tubes[0].atoms);
+    EXPECT_GT(fit.filled(0), 0.85) << name;
+    EXPECT_GT(fit.filled(7), 0.75) << name;
+  }
+}
+
+// Displacements of 0.01 nm of every atom move an element of N by 0.01/sqrt(N), twice as much with its neighbours.
+TEST(RoundTripOfElements, AveragesTheNoiseOfAtoms) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  const Elements before = rod(10, set.element_length, {0, 0.05, 0.05});
+  const Difference d = difference(before.state, found_again(before, reference_of(set), 5, 0.01), 10);
+  const double atoms = set.atoms_per_length * set.element_length;
+  EXPECT_LT(d.distance, 10 * 0.01 / std::sqrt(atoms));
+  EXPECT_LT(d.turn, 14 * 0.01 / set.radius / std::sqrt(atoms));
+  EXPECT_GT(d.distance, 0.2 * 0.01 / std::sqrt(atoms));
+}
+
+TEST(AtomsOfElements, CountWithoutPlacingThem) {
+  for (const char* name : {"cnt-8-2-tersoff", "cnt-17-0-tersoff"}) {
+    const ParameterSet set = shipped(name);
+    const Elements e = rod(9, set.element_length, {});
+    const TubeReference reference = reference_of(set);
+    const AtomsOfElements all(e.topology, e.state, {reference}, {{0, 0, 9}}),
+        parts(e.topology, e.state, {reference}, {{0, 0, 4}, {0, 4, 9}});
+    long placed = 0;
+    all.for_each([&](const PlacedAtom&) { ++placed; });
+    EXPECT_EQ(all.count(), placed);
+    EXPECT_EQ(parts.count(), placed) << "each atom belongs to one element";
+    EXPECT_NEAR(static_cast<double>(placed), set.atoms_per_length * 9 * set.element_length,
+                2 * set.chirality.n + 2);
+  }
+}
+
+// Bonds of a bent, twisted and stretched tube are near those at rest: no atom is misplaced at the border of
+// elements.
+TEST(AtomsOfElements, KeepTheLengthsOfBonds) {
+  const ParameterSet set = shipped("cnt-12-6-tersoff");
+  const std::vector<Vector3> atoms = atoms_of(rod(6, set.element_length, {0.01, 0.02, 0.05}), reference_of(set));
+  for (std::size_t i = 0; i < atoms.size(); i += 5) {
+    int bonds = 0;
+    for (std::size_t j = 0; j < atoms.size(); ++j) {
+      const double d = (atoms[i] - atoms[j]).norm();
+      if (i == j || d > 0.19) continue;
+      ++bonds;
+      EXPECT_GT(d, 0.133);
+      EXPECT_LT(d, 0.153);
+    }
+    EXPECT_GE(bonds, 1);
+    EXPECT_LE(bonds, 3);
+  }
+}
+
+TEST(TubeReference, RefusesASetThatIsNoCarbonTube) {
+  ParameterSet set = shipped("cnt-10-10-tersoff");
+  set.radius *= 1.5;
+  EXPECT_THROW(reference_of(set), InputError);
+}
+
+}  // namespace UNIT
+}  // namespace
+}  // namespace ropewalk
