@@ -99,9 +99,10 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
   for (const Line& line : lines) {
     const Quantity* q = find_quantity(against, line.key);
     const Measured& m = f.rod.*line.value;
-    fmt::print(" {:>20}", q && q->value != 0 ? fmt::format("{:.3f} +- {:.2g}", m.value * in_nN / q->value,
-                                                           std::fabs(m.standard_error * in_nN / q->value))
-                                             : "-");
+    fmt::print(" {:>20}", q && std::fabs(q->value) > 0.01 * m.standard_error * in_nN
+                              ? fmt::format("{:.3f} +- {:.2g}", m.value * in_nN / q->value,
+                                            std::fabs(m.standard_error * in_nN / q->value))
+                              : "-");
   }
   fmt::print("\n");
   if (!f.local)

@@ -11,8 +11,8 @@
 
 namespace ropewalk {
 
-inline constexpr double carbon_bond = 0.18;    // nm: atoms nearer than this are bonded
-inline constexpr double atoms_overlap = 0.08;  // nm: nearer than this no two atoms come
+inline constexpr double carbon_bond = 0.18;     // nm: atoms nearer than this are bonded
+inline constexpr double atoms_overlap = 0.072;  // nm: nearer than half a bond no two atoms come
 
 // Up to four neighbours of each atom; more are counted.
 class BondGraph {

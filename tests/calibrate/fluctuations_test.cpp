@@ -108,7 +108,7 @@ TEST(Fluctuations, NeedFramesAndBonds) {
 // 200 chains of this program at 300 K: their own stiffness lies within the standard error in 68 % of them, within
 // two standard errors of that share, 6.6 %. The seed was fixed before the first run.
 TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
-  constexpr int chains = 200, elements = 10;
+  constexpr int chains = 200, elements = 6;
   Topology topology;
   TubeType& type = topology.types[0];
   type.element_length = a;
@@ -126,11 +126,11 @@ TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
   const Interaction none;
   Stepping stepping;
   stepping.thermostat = std::make_shared<LangevinThermostat>(Schedule::always(room), 8, 2026);
-  Simulation simulation(topology, none, {}, state, 0.1 * time_step_limit(topology, none, 0).limit, 0, stepping);
+  Simulation simulation(topology, none, {}, state, 0.2 * time_step_limit(topology, none, 0).limit, 0, stepping);
   std::vector<FluctuationSums> sums(chains, FluctuationSums(a));
-  simulation.steps(3000);
-  for (int f = 0; f < 96; ++f) {
-    simulation.steps(150);
+  simulation.steps(800);
+  for (int f = 0; f < 48; ++f) {
+    simulation.steps(80);
     for (int c = 0; c < chains; ++c) {
       sums[static_cast<std::size_t>(c)].add_chain(simulation.state(), static_cast<std::size_t>(c * elements),
                                                   elements);
