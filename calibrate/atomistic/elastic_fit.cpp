@@ -295,7 +295,6 @@ TaylorFit fit_taylor(const std::vector<EnergyPoint>& all, const Polynomial& poly
   };
   FitOptions options;
   options.starts = 2;
-  options.max_seconds = 5;
   out.fit = fit_least_squares(parameters, all.size(), residuals, options);
   left.resize(all.size());
   residuals(out.fit.value, left);
@@ -522,7 +521,6 @@ void fit_bend(std::vector<AtomisticRow>& table, Stiffness& out) {
   };
   FitOptions options;
   options.starts = 2;
-  options.max_seconds = 2;
   const FitResult fit = fit_least_squares(
       {{"EI", 1, 0.5, 1.5, true}, {"k4", slope, slope - 0.5, slope + 0.5, true}}, pairs.size(), residuals, options);
   if (fit.verdict == FitResult::Verdict::nothing_finite) throw not_enough();

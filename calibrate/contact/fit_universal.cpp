@@ -77,7 +77,6 @@ FitResult fit_rows(const std::vector<TubePair>& pairs, UniversalLine& law) {
   FitOptions options;
   options.starts = 2;
   options.max_evaluations = 400000;
-  options.max_seconds = 600;
   const FitResult fit = fit_least_squares(box(), size, residuals, options);
   set_rows(fit.value, law);
   return fit;

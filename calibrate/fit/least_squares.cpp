@@ -524,8 +524,9 @@ std::string describe(const FitResult& f, const Fit& fit, const FitOptions& optio
              number("%.6g", fit.second_chi2()) + "; narrow the box, start nearer or allow more evaluations";
       break;
     case FitResult::Verdict::limit_reached:
-      text = "stopped by the limit of " + std::to_string(options.max_evaluations) + " evaluations or " +
-             number("%.3g", options.max_seconds) + " s before it converged: raise it or start nearer";
+      text = "stopped by the limit of " + std::to_string(options.max_evaluations) + " evaluations" +
+             (std::isfinite(options.max_seconds) ? " or " + number("%.3g", options.max_seconds) + " s" : "") +
+             " before it converged: raise it or start nearer";
       break;
   }
   text += "; " + figures(f);

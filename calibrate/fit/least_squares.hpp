@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ using Residuals = std::function<void(const std::vector<double>& p, std::vector<d
 struct FitOptions {
   int starts = 8;
   int max_evaluations = 20000;  // of the residuals, over all starts and algorithms
-  double max_seconds = 30;
+  // None, unless somebody asks: what a fit gives must not depend on the speed of the machine.
+  double max_seconds = std::numeric_limits<double>::infinity();
   double tolerance = 1e-10;  // relative, of chi2 and of the parameters in units of their box
   double agreement = 1e-4;   // relative difference of chi2 up to which the two algorithms agree
   std::uint64_t seed = 1;

@@ -6,7 +6,7 @@
 //   free   = ["EA", "GJ"]           # the others keep their start
 //   [start]   EA = 1500             # instead of the base's
 //   [bounds]  EA = [1000, 2000]     # instead of a fifth to five times the start
-//   [search]  starts = 8, max_evaluations = 20000, max_seconds = 30, seed = 1
+//   [search]  starts = 8, max_evaluations = 20000, max_seconds (none), seed = 1
 #include <fmt/format.h>
 
 #include <algorithm>

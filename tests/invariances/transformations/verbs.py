@@ -330,6 +330,7 @@ def solver_of_a_relaxation(case):
         scene["start"] = {"twist_deg_per_nm": 0.5} if scene.source == "rope" else {}
         scene.pop("thermostat", None)
     skip_if("twist" in scene, "FIRE comes to no rest under a moment")
+    skip_if("perturbation_nm" in scene.get("rope", {}), "a perturbed rope has many states of rest near one another")
     # To a state whose energy is known far better than the one that is compared.
     scene = scene.with_keys(run={"energy_tolerance": 1e-4, "solver": None, "max_steps": 6000})
     outs = [case.start(scene.with_keys(run={"solver": solver})) for solver in ("fire", "auto")]
