@@ -73,7 +73,7 @@ long long bytes_written(const ChildOptions& options) {
 
 // Runs in the child between fork and exec: only async-signal-safe calls are allowed.
 [[noreturn]] void become(char* const* arguments, char* const* environment, const char* folder, int output,
-                         int report, pid_t parent, const struct rlimit& most) {
+                         int report, pid_t parent, const struct rlimit& most, bool bounded) {
   const auto give_up = [&] {
     const int code = errno;
     (void)!::write(report, &code, sizeof code);
@@ -90,7 +90,7 @@ long long bytes_written(const ChildOptions& options) {
   if (::dup2(input, 0) < 0) give_up();
   if (output >= 0 && (::dup2(output, 1) < 0 || ::dup2(output, 2) < 0)) give_up();
   ::setrlimit(RLIMIT_FSIZE, &most);
-  ::signal(SIGXFSZ, SIG_DFL);  // the end of a program that would go on without its file
+  if (bounded) ::signal(SIGXFSZ, SIG_DFL);  // the end of a program that would go on without its file
   ::execvpe(arguments[0], arguments, environment);
   give_up();
   ::_exit(127);
@@ -140,7 +140,8 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   if (own_output && output < 0) return failed(errno);
   struct rlimit most {};
   ::getrlimit(RLIMIT_FSIZE, &most);
-  const bool bounded = static_cast<rlim_t>(options.most_bytes) < most.rlim_cur;
+  const bool bounded = options.most_bytes < std::numeric_limits<long long>::max() &&
+                       static_cast<rlim_t>(options.most_bytes) < most.rlim_cur;
   if (bounded) most.rlim_cur = static_cast<rlim_t>(options.most_bytes);
   int report[2];  // closes by itself when exec succeeds, else carries errno
   if (::pipe2(report, O_CLOEXEC) != 0) {
@@ -151,7 +152,8 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0)
-    become(argument_list.data(), environment.data(), options.folder.c_str(), output, report[1], parent, most);
+    become(argument_list.data(), environment.data(), options.folder.c_str(), output, report[1], parent, most,
+           bounded);
   const int fork_code = errno;
   if (own_output) ::close(output);
   ::close(report[1]);

@@ -99,7 +99,7 @@ own_load/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/d
 grep -q "$PWD/own_load/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
 sed 's/^apart_nm.*/apart = 1.8/' pair.toml > bad.toml
 own_load/my-ropewalk check bad.toml 2> said && fail "an unknown key of the kind is taken"
-grep -q 'did you mean "apart_nm"' said || fail "the kind's own key is not named: $(cat said)"
+grep -q 'pair.apart_nm: is missing; did you mean it by "apart"' said || fail "the kind's own key is not named: $(cat said)"
 own_load/own_load "$here/own_load/wind.toml" || fail "the tube in the wind does not bend as a beam does"
 sed '/^growth/d' "$here/own_load/wind.toml" > calm.toml
 own_load/own_load calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"

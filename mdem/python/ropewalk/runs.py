@@ -6,6 +6,8 @@ import os
 from importlib import import_module
 from typing import Any, Optional, TypedDict
 
+import numpy as np
+
 from . import _core
 from .errors import InputError
 from .frames import _AMU, Frames
@@ -126,9 +128,10 @@ class Run:
             universe.atoms.radii = 10 * core.radius[tube]
             names = [_core.parameter_set(path)[1] for path in core.sets]
             universe.add_TopologyAttr("resnames", [names[of_type] for of_type in core.tube_type])
+            tube_type = np.asarray(core.tube_type)
             for of_type, name in enumerate(names):
                 segment = universe.add_Segment(segid=name)
-                universe.residues[core.tube_type == of_type].segments = segment
+                universe.residues[np.flatnonzero(tube_type == of_type)].segments = segment
         universe.trajectory.add_transformations(in_its_units)
         return universe
 
