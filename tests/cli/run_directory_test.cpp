@@ -73,7 +73,7 @@ TEST_F(RunDirectoryOf, SignalsOfBatchSystems) {
         beside_a_run("run s.toml --out d --quiet --force", fmt::format("kill -{} $pid\nwait $pid", name));
     EXPECT_EQ(o.code, 128 + number) << name << o.err;
     EXPECT_EQ(manifest().at("status"), "interrupted") << name;
-    EXPECT_TRUE(fs::exists(dir / "d/final.csv")) << name;
+    EXPECT_FALSE(fs::exists(dir / "d/final.csv")) << name;
     fs::remove_all(dir / "d");
   }
   // nohup has HUP ignored, and it stays so.
