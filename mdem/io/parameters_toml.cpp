@@ -139,8 +139,11 @@ class Reader {
     for (auto* row : {&pull.force, &set_.pull_errors})
       for (double& force : *row) force *= units::nN_nm;
     const EdgeOfWindow edge = edge_of_window(h, set_.bond.stretch);
-    if (!(pull.force[0] > 0))
-      throw t.error("force", "begins with no tension", "begin where [bond.anharmonic] ends");
+    if (!(std::fabs(pull.force[0] / edge.force - 1) < 0.25))
+      throw t.error("force", fmt::format("begins with {:.4g} nN", pull.force[0] * units::eV_in_nN_nm),
+                    fmt::format("EA and [bond.anharmonic] give {:.4g} nN at max_strain: `ropewalk calibrate pull` makes "
+                                "the table anew, or leave it out",
+                                edge.force * units::eV_in_nN_nm));
     const double first = edge.force * (pull.force[1] / pull.force[0] - 1),
                  step = (pull.end - h.max_strain) / PULL_STEPS;
     for (std::size_t k = 0; k < PULL_STEPS; ++k)
