@@ -292,6 +292,14 @@ void renew_shear(const Settings& s, ParameterSet& set) {
     }
 }
 
+// The forces of the pull go on from that of EA.
+void renew_pull(const Settings& s, ParameterSet& set) {
+  if (!set.pull) return;
+  const double factor = find_quantity(set, "bond.EA")->value / find_quantity(*s.base, "bond.EA")->value;
+  for (double& force : set.pull->force) force *= factor;
+  for (double& error : set.pull_errors) error *= factor;
+}
+
 // The groups of the base that name a fitted number are replaced by one of this fit.
 void renew_correlations(const Settings& s, const FitModel& m, const FitResult& fit, ParameterSet& set) {
   Correlation fitted;

@@ -83,6 +83,9 @@ class InputsOf {
       std::vector<std::string> paths;
       for (const std::string& key : keys)
         if (find_quantity(set, key)) paths.push_back(key + ".value");
+      // The force of the pull goes on from that of EA.
+      for (std::size_t row = 0; name == "EA" && set.pull && row < set.pull->force.size(); ++row)
+        paths.push_back(fmt::format("bond.pull.force.values.{}", row));
       add(name + of, folder + name, sigma, step_of(sigma), correlated, Of::set, k, paths);
     };
     std::string none;

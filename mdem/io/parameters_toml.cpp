@@ -139,15 +139,15 @@ class Reader {
     for (auto* row : {&pull.force, &set_.pull_errors})
       for (double& force : *row) force *= units::nN_nm;
     const EdgeOfWindow edge = edge_of_window(h, set_.bond.stretch);
-    if (!(std::fabs(pull.force[0] / edge.force - 1) < 0.25))
+    if (!(std::fabs(pull.force[0] / edge.force - 1) < 0.1))
       throw t.error("force", fmt::format("begins with {:.4g} nN", pull.force[0] * units::eV_in_nN_nm),
-                    fmt::format("EA and [bond.anharmonic] give {:.4g} nN at max_strain: `ropewalk calibrate pull` makes "
-                                "the table anew, or leave it out",
+                    fmt::format("the terms of [bond.anharmonic] end with {:.4g} nN: calibrate the set anew",
                                 edge.force * units::eV_in_nN_nm));
-    const double first = edge.force * (pull.force[1] / pull.force[0] - 1),
-                 step = (pull.end - h.max_strain) / PULL_STEPS;
+    std::array<double, PULL_STEPS + 1> force = pull.force;
+    force[0] = edge.force;
+    const double first = force[1] - force[0], step = (pull.end - h.max_strain) / PULL_STEPS;
     for (std::size_t k = 0; k < PULL_STEPS; ++k)
-      if (!(pull.force[k + 1] > pull.force[k]))
+      if (!(force[k + 1] > force[k]))
         throw t.error("force", fmt::format("does not rise from value {} to value {}", k, k + 1),
                       "end the pull where the force is largest");
     if (edge.slope * step > 3 * first)

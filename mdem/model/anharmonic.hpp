@@ -83,13 +83,12 @@ struct Pull {
   double end = 0;
   std::array<double, PULL_STEPS + 1> force{};
 };
-// All forces are scaled so that the first is that at the edge of the window: a tube with another EA or other
-// anharmonic terms keeps the shape of its pull.
+// The first force is taken from the window.
 inline void set_pull(Anharmonic& h, double EA, const Pull& pull) {
   const double step = h.pull_step = (pull.end - h.max_strain) / PULL_STEPS;
   const EdgeOfWindow edge = edge_of_window(h, EA);
   std::array<double, PULL_STEPS + 1> force = pull.force, slope{};
-  for (double& f : force) f *= edge.force / pull.force[0];
+  force[0] = edge.force;
   const auto secant = [&](int k) { return (force[k + 1] - force[k]) / step; };
   slope[0] = edge.slope;
   for (int k = 1; k < PULL_STEPS; ++k) {

@@ -79,15 +79,13 @@ class ParameterSet(Mapping[str, Quantity]):
         return f"<ParameterSet {self.name}: {self.grade}>"
 
     def changed(
-        self, changes: Mapping[str, float | None] = {}, out: str | os.PathLike[str] = "", **more: float
+        self, changes: Mapping[str, float] = {}, out: str | os.PathLike[str] = "", **more: float
     ) -> ParameterSet:
-        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is. The
-        forces of `[bond.pull]` are scaled with the force at the end of `[bond.anharmonic]`. A set in which that
-        force differs from the table's first one by more than a quarter is refused, unless "bond.pull" is left out.
+        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is. Where
+        the law of stretch is changed, the pull of atoms, `[bond.pull]`, is left out.
 
         Arguments:
-            changes: values by name, each in the unit that this set has it in: {"bond.EA": 1300}. None leaves a number
-                or a table out: {"bond.EA": 650, "bond.pull": None}
+            changes: values by name, each in the unit that this set has it in: {"bond.EA": 650}
             out: the file to write, never one that exists; its name becomes that of the set (no unit)
             more: the same, in the same units, by the last part of a name that no other number has: EA=650
         """
@@ -99,16 +97,14 @@ class ParameterSet(Mapping[str, Quantity]):
         with open(self._path, "rb") as file:
             tables = tomllib.load(file)
         for name, value in {**changes, **{self._by_last(k): v for k, v in more.items()}}.items():
-            if name not in self._quantities and not (value is None and self._has_table(tables, name)):
+            if name not in self._quantities:
                 raise InputError(f'{self.name}: there is no number "{name}"; see list() of the set', self._path, key=name)
-            *path, last = name.split(".")
             at = tables
-            for key in path:
+            for key in name.split("."):
                 at = at[key]
-            if value is None:
-                del at[last]
-            else:
-                at[last].update(value=float(value), standard_error=0.0, origin="chosen")
+            at.update(value=float(value), standard_error=0.0, origin="chosen")
+            if name.startswith(("bond.EA", "bond.anharmonic.")):
+                tables["bond"].pop("pull", None)  # which goes on from these
         tables["meta"]["name"] = os.path.splitext(os.path.basename(target))[0]
         write_whole(target, toml_of(tables).encode())
         try:
@@ -116,15 +112,6 @@ class ParameterSet(Mapping[str, Quantity]):
         except InputError:
             os.unlink(target)
             raise
-
-    @staticmethod
-    def _has_table(tables: Mapping[str, Any], name: str) -> bool:
-        at: Any = tables
-        for key in name.split("."):
-            if not isinstance(at, Mapping) or key not in at:
-                return False
-            at = at[key]
-        return isinstance(at, Mapping)
 
     def _by_last(self, key: str) -> str:
         names = [name for name in self._quantities if name.split(".")[-1] == key]
