@@ -346,7 +346,7 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
         q.note = fmt::format("fitted to {}; fit error {:.1e} of the well", fs::path(a.data).filename().string(),
                              fit.largest);
   }
-  if (s.model == "stiffness") renew_shear(s, set);
+  if (s.model == "stiffness") renew_shear(s, set), renew_pull(s, set);
   renew_correlations(s, m, fit, set);
   set.name = fs::path(a.out).stem().string();
   set.provenance.emplace_back("fit_command", a.command);
