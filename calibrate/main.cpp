@@ -5,7 +5,7 @@
 
 #include "cli/command_line.hpp"
 #include "io/data_files.hpp"
-#include "io/failure.hpp"
+#include "io/error_exit.hpp"
 #include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "model/error.hpp"
@@ -195,10 +195,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "ropewalk calibrate: %s\n", usage_error(app, e, "ropewalk calibrate").c_str());
     return 2;
   } catch (const std::exception& e) {
-    if (interrupted_by() != 0 && failure_code(e) == 3) {
+    if (interrupted_by() != 0 && error_code(e) == 3) {
       std::fprintf(stderr, "\nropewalk calibrate: interrupted; nothing was written\n");
       return 128 + interrupted_by();
     }
-    return tell_failure("ropewalk calibrate", e);
+    return report_error("ropewalk calibrate", e);
   }
 }
