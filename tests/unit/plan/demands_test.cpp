@@ -45,7 +45,7 @@ TEST(Demands, DoNotDependOnTheOrderOfTypes) {
   const auto notes = [](const char* sets, const char* types) {
     Scene scene = scene_of_text(
         fmt::format("format = \"ropewalk-scene-1\"\nparameters = [{}]\ntube_types = [{}]\nelement_length_nm = 1.3\n"
-                    "[rope]\ntubes = 7\nlength_nm = 30\n[twist]\nmoment_nN_nm = 4\nrate_nN_nm_per_ps = 0.1\n",
+                    "[rope]\ntubes = 7\nlength_nm = 30\n[twist]\nmoment_nN_nm = 15\nrate_nN_nm_per_ps = 0.1\n",
                     sets, types),
         "s.toml");
     const Prepared p = prepare(scene);
@@ -82,7 +82,7 @@ TEST(TubeLaw, BearsWhatItSaysItBears) {
     for (const double twist : {0.0, 0.04, -0.05})
       EXPECT_NEAR(law.tension(law.strain_under(small, twist), twist), small, 1e-3 * small) << twist;
     for (const double strain : {0.0, 0.05})
-      EXPECT_NEAR(law.torque(law.twist_under(small, strain), strain), small, 1e-3 * small) << strain;
+      EXPECT_NEAR(law.torque(strain, law.twist_under(small, strain)), small, 1e-3 * small) << strain;
     // Hooke's law, for small loads.
     EXPECT_NEAR(law.strain_under(0.1, 0), 0.1 / type.bond.stretch, 1e-3 * 0.1 / type.bond.stretch);
     EXPECT_NEAR(law.twist_under(0.1, 0), 0.1 / type.bond.twist, 1e-3 * 0.1 / type.bond.twist);
