@@ -35,9 +35,9 @@ Difference difference(const State& a, const State& b, int g) {
 State found_again(const Elements& rod, const TubeReference& reference, unsigned seed, double noise = 0) {
   std::vector<Vector3> atoms = atoms_of(rod, reference);
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, noise);
+  std::normal_distribution<double> normal;
   if (noise > 0)
-    for (Vector3& x : atoms) x += Vector3(normal(random), normal(random), normal(random));
+    for (Vector3& x : atoms) x += noise * Vector3(normal(random), normal(random), normal(random));
   std::shuffle(atoms.begin(), atoms.end(), random);
   const FoundTubes found = found_in(atoms);
   EXPECT_EQ(found.tubes.size(), 1u);
