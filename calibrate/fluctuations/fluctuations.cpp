@@ -21,7 +21,7 @@ struct Numbers {
   double EA, EI_x, EI_y, GJ, coupling;
 };
 
-// Of variances that grow by these over the length (nm).
+// The stiffnesses of a rod whose variances are these moments over a length (nm).
 Numbers stiffness_of(const Moments& m, double length, double kT) {
   Eigen::Matrix2d c;
   c << m[ss], m[st], m[st], m[tt];
@@ -173,7 +173,7 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
     out.local = out.local && agree(k.EA, out.rod.EA) && agree(k.EI_x, out.rod.EI_x) &&
                 agree(k.EI_y, out.rod.EI_y) && agree(k.GJ, out.rod.GJ);
   }
-  // What stays: the variance of the means of both halves of the time, which have no noise in common.
+  // The covariance of the means of both halves of the time is free of noise, which they do not share.
   const auto half = static_cast<std::size_t>(frames_ / 2);
   for (std::size_t k = 3; k < 6; ++k) {
     double kept = 0, whole = 0;

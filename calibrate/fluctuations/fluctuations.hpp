@@ -27,7 +27,7 @@
 
 namespace ropewalk::calibrate {
 
-// Of one bond: shear_x, shear_y, s, b_x, b_y, t.
+// The motion of one bond: shear_x, shear_y, s, b_x, b_y, t.
 using BondMotion = std::array<double, 6>;
 // `i` and the element behind it; the body's z is the axis.
 BondMotion bond_motion(const State& state, std::size_t i);

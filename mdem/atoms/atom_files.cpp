@@ -84,7 +84,7 @@ class Lines {
 // Thrown and caught in this file: the file ends within a frame.
 struct CutOff {};
 
-// What every file says of types, as far as it does.
+// Masses by type and the number of types, where the file names them.
 struct Species {
   std::map<long, double> masses;
   long types = 0;
@@ -255,7 +255,7 @@ class AtomDataReader : public Reader {
     }
   }
 
-  // By the columns of a line, with or without three image flags.
+  // The atom style that fits the columns of this line, with or without three image flags.
   const Style* guessed(const std::vector<std::string>& w) const {
     const std::size_t n = w.size();
     const bool images =
@@ -492,7 +492,7 @@ class XyzReader : public Reader {
     for (std::size_t k = 0; k < 3; ++k) box.periodic[k] = pbc.size() != 3 || pbc[k] == "T" || pbc[k] == "1";
   }
 
-  // Of Properties=species:S:1:pos:R:3.
+  // Finds the columns of species and position in a text such as Properties=species:S:1:pos:R:3.
   void set_columns(const std::string& properties, int& species, int& position) const {
     if (properties.empty()) return;
     species = position = -1;

@@ -54,7 +54,7 @@ class Planning {
     return with_value(text, key, fmt::format("{:.17g}", value), scene_.path);
   }
 
-  // Of the scene of this text, where it can be run; it is then among the runs.
+  // Adds a run of the scene in this text; false: the scene cannot be run.
   bool add(const std::string& name, const std::string& folder, const std::string& words, const std::string& text,
            double elements, double times) {
     const TemporaryFolder at;
@@ -102,7 +102,7 @@ class Planning {
     return relaxes() ? text : with(text, "run.frames_every_ps", prepared_.duration);
   }
 
-  // Where a run had to divide its steps, half of its first step would be divided to the same.
+  // The shortest step of the run: half of a longer one would be divided to the same step again.
   double shortest_step() const {
     double least = prepared_.time_step / units::fs;
     for (const LogRow& row : log_)
