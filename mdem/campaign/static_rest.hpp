@@ -41,7 +41,7 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
 // Both ways along the motion that grows fastest, by a part of a radius; none where it is not known.
 std::vector<State> along_growing_motion(const Scene& scene, const StaticRest& rest);
 
-// What the motion that grows fastest moves, as `modes` has it; empty: it is not known.
+// Describes the fastest growing motion in the words of `modes`; empty: this motion is not known.
 std::string growing_motion_words(const Scene& scene, const StaticRest& rest);
 
 // What they say together, in a sentence or two. `tolerance`: part of the twist within which two are one state.

@@ -48,7 +48,7 @@ class Bisection {
     ++out_.states;
     if (!rest.at_rest)
       return out_.why = fmt::format("no state of rest at {:g}: {}", value, rest.why), Outcome::unclear;
-    // What left a saddle of the energy is another state than the one that began.
+    // A solution that left a saddle of the energy is another state than the first one.
     if (rest.stability.kind == Kind::unstable || rest.saddles > 0) {
       out_.above = value;
       out_.growth = rest.stability.kind == Kind::unstable ? 1000 * rest.stability.growth : StaticThreshold::none;

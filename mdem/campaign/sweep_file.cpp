@@ -521,7 +521,7 @@ std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<Swee
     if (added) out.push_back(std::move(r));
     out[entry->second].points.push_back(p);
   }
-  // Where nothing but the seed varies, the one group has the name of what it holds.
+  // If only the seed varies, the single group is named by its number of seeds.
   for (Replicates& r : out)
     if (r.name.empty())
       r.name = r.points.size() == 1 ? r.points.front().name : fmt::format("{} seeds", r.points.size());

@@ -37,13 +37,13 @@ namespace fs = std::filesystem;
 // A job may start in another folder.
 std::string absolute(const std::string& path) { return fs::absolute(path).lexically_normal().string(); }
 
-// As SLURM reads it: a number alone would be minutes.
+// A time in the form that SLURM reads; SLURM takes a number alone for minutes.
 std::string in_hours(double seconds) {
   const auto s = static_cast<long>(std::ceil(seconds));
   return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-// What `run` and `resume` both take.
+// The options that `run` and `resume` share.
 std::string options_of(const RunArguments& a) {
   std::string text;
   const auto add = [&](const char* name, const std::string& value) {

@@ -66,7 +66,7 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
   if (!none.empty()) fmt::print("No influence beyond rounding on {}.\n", none);
 }
 
-// What would halve the error of the results that this source decides.
+// The advice that halves the error of results whose largest error comes from this source.
 std::string remedy_of(const std::string& source, const NumericErrors& whole, const RunErrors& parameters) {
   for (const NumericSource& s : whole.runs().sources)
     if (s.name == source) return s.remedy;
@@ -201,7 +201,7 @@ struct FinishedRun {
   }
 };
 
-// What follows from the errors of the inputs, into its files.
+// Writes the errors of the results that follow from the errors of the inputs.
 RunErrors write_input_errors(const FinishedRun& run, const ErrorInputs& inputs, std::string& json) {
   const std::string directory = run.dir.path + "/errors";
   std::vector<ErrorSource> sources;

@@ -59,7 +59,7 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
-// In this process: both states cost some seconds.
+// Solves for both states in this process, since each takes some seconds.
 int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& p, const RestTheory& theory,
                     double length, const std::string& name) {
   if (a.viscosity)
