@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "io/bath_words.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -352,6 +353,34 @@ TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
   EXPECT_GT(row["damping_eV"], 0.1);
   EXPECT_NEAR(row["damping_eV"] + row["friction_slip_eV"] + row["friction_drag_eV"], row["dissipated_eV"], 1e-9);
   EXPECT_THAT(damping_words(row), HasSubstr("which atoms do not have"));
+}
+
+// Tubes that rub in a bath are colder than it, by as much as the run says at its end.
+TEST(DryFriction, ABathSaysWhatItDoesNotHold) {
+  constexpr double coupling = 0.1;
+  const auto log_with = [&](const std::string& friction) {
+    Scene scene = rope(friction, "duration_ps = 60\n",
+                       cold + "[start]\ntemperature_K = 300\n[thermostat]\ntemperature_K = 300\n"
+                              "coupling_per_ps = 0.1\n");
+    MovingScene moving(scene);
+    std::vector<LogRow> log;
+    while (moving.simulation.time() < 60) {
+      moving.simulation.steps(20);
+      log.push_back(moving.row());
+    }
+    return log;
+  };
+  EXPECT_EQ(bath_words(log_with("[[friction]]\nend_strength_pN = 0.001\n"), coupling), "");
+  const std::vector<LogRow> log = log_with("[[friction]]\nstrength_pN_per_nm = 5\nelastic_slip_nm = 0.003\n");
+  const std::string words = bath_words(log, coupling);
+  const auto at = words.find("at about ");
+  ASSERT_NE(at, std::string::npos) << words;
+  double held = 0;
+  for (std::size_t k = log.size() / 2; k < log.size(); ++k)
+    held += log[k]["kinetic_eV"] / static_cast<double>(log.size() - log.size() / 2);
+  held /= 3 * 70 * units::boltzmann * 300;
+  EXPECT_LT(held, 0.95);
+  EXPECT_NEAR(std::stod(words.substr(at + 9)) / 100, held, 0.06);
 }
 
 TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
