@@ -450,7 +450,7 @@ TEST(DryFriction, BadOnesAreRefused) {
               HasSubstr("claims all pairs of types, as [[friction]] of line 6; put both into one table"));
   EXPECT_THAT(message(axial + "elastic_slip_nm = 0\n"), HasSubstr("elastic_slip_nm"));
   EXPECT_THAT(message(axial, "[contact]\nlaw = \"none\"\n"), HasSubstr("contact.law"));
-  EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("[periodic]"));
+  EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("periodic.twist_deg_per_nm"));
   EXPECT_THAT(log_header(), HasSubstr(",friction_eV"));
 }
 
