@@ -75,7 +75,7 @@ std::string remedy_of(const std::string& source, const NumericErrors& whole, con
                                     : "the mean of four runs from other starts (replicates = 4 in a sweep)";
   if (source == "potential") return "no run of this model: potentials of carbon lie so far apart";
   for (const ErrorSource& s : parameters.sources())
-    if (s.name == source) return fmt::format("{} known twice as well as to {:.2g} %", source, 100 * s.sigma);
+    if (s.name == source) return fmt::format("a value of {} with less than half of its standard error of {:.2g} %", source, 100 * s.sigma);
   return "";
 }
 

@@ -93,7 +93,8 @@ std::vector<ModelChange> cheaper_changes(const Scene& scene, const SceneFeatures
         {"law", "Hooke's bonds", [](PlannedScene& w) { w.set("bond", "law", "\"harmonic\"", "Hooke's bonds"); }});
   if (scene.run.mode == RunOptions::Mode::relax) return out;
   if (!end_state) {
-    not_tried.push_back("heavier masses and relaxation: the motion is asked for (give --end-state if it is not)");
+    not_tried.push_back(
+        "heavier masses and relaxation: they change the motion (give --end-state if only the final state matters)");
     return out;
   }
   if (f.sudden)

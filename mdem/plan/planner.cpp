@@ -77,8 +77,8 @@ class Planner {
     if (!plan_.standard.holds) return {};
     choose();
     plan_.remarks.push_back(
-        "The default model holds. To try cheaper ones would take longer than they save: --runs N plans for so many "
-        "runs, --pilot-seconds for so much time.");
+        "The default model is accurate enough. Trying cheaper ones would cost more time than they save; --runs N "
+        "plans for more runs, and --pilot-seconds gives the pilots more time.");
     return std::move(plan_);
   }
 
@@ -270,8 +270,9 @@ class Planner {
                         "its model.",
                         100 * s, name, 100 * request_.error));
     if (!plan_.chosen.holds)
-      plan_.remarks.push_back(fmt::format("No model that was tried holds {:g} %: this is the most accurate one.",
-                                          100 * request_.error));
+      plan_.remarks.push_back(
+          fmt::format("No model that was tried keeps the error below {:g} %: this is the most accurate one.",
+                      100 * request_.error));
     if (!plan_.pilots.empty() && features_.prescribes_moment && scene_.source->is_parallel()) add_buckling();
     add_slice();
   }

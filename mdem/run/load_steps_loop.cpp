@@ -126,7 +126,7 @@ std::string LoadStepsLoop::words_of_end(const Statics& end) const {
   std::string words = fmt::format("; none was found at the next one, {}: ", load_words(times_[next()]));
   if (const std::string bond = overloaded_bond(s); !bond.empty()) return words + bond;
   if (end.end == Statics::End::refused)
-    return words + "no step of Newton's method is short enough, as where states of rest end (a fold)";
+    return words + "Newton's method finds no step, as at a fold, where a branch of equilibrium states ends";
   return words + fmt::format("{:.2g} eV/nm are left", end.relaxed.force);
 }
 
@@ -144,7 +144,7 @@ std::string LoadStepsLoop::words_of_curve() const {
   else if (!found_.empty() && count(Equilibrium::Stability::unknown) == 0)
     words += ", all stable";
   if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
-    words += fmt::format("; of {} it cannot be told whether they are stable", unknown);
+    words += fmt::format("; the stability of {} is not known", unknown);
   return words;
 }
 

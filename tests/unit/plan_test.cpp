@@ -143,7 +143,7 @@ TEST(Plan, GoesFinerWhereTheDefaultDoesNotHold) {
   const Plan none = planned(bundle, 0.0011, pilots);
   EXPECT_FALSE(none.chosen.holds);
   EXPECT_EQ(none.chosen.name, "elements half as long") << "the most accurate";
-  EXPECT_THAT(fmt::format("{}", fmt::join(none.remarks, "\n")), HasSubstr("No model that was tried holds 0.11 %"));
+  EXPECT_THAT(fmt::format("{}", fmt::join(none.remarks, "\n")), HasSubstr("No model that was tried keeps the error below 0.11 %"));
 }
 
 // A rope with noise is run with three seeds, whose differences are no error of a model.

@@ -228,14 +228,14 @@ def plan(
     pilot_seconds: Optional[float] = None,
     jobs: Optional[int] = None,
 ) -> Scene:
-    """The scene with the cheapest model that holds an error, as `ropewalk plan`. What it found is logged, and stands in the
+    """The scene with the cheapest model whose error is small enough, as `ropewalk plan`. What it found is logged, and stands in the
     comments of the scene's text.
 
     Arguments:
         scene: a scene, a dict of its keys (units stand in their names), or a file
         error: largest relative error of each observable (no unit)
         observables: "energy", or columns of log.csv; empty: energies, twist angle, torque, tension
-        end_state: only the end is asked for, not the motion
+        end_state: only the final state matters, not the motion
         pilot_seconds: processor time for all pilots, about, s; None: a tenth of the run's, or a minute of each core
         jobs: pilots at a time; None: one for each core (no unit)
     """
@@ -376,7 +376,7 @@ def errors(
     jobs: Optional[int] = None,
     again: bool = False,
 ) -> dict[str, Any]:
-    """Errors of a finished run's results that follow from those of its sets, files of friction and typed numbers, as
+    """Error bars of a finished run, from the standard errors of its parameter sets, friction files and scene numbers, as
     `ropewalk errors`, which repeats the run: what `--json` says, with units in the names.
 
     Arguments:
