@@ -107,8 +107,8 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
   fmt::print("\n");
   if (!f.local)
     fmt::print(
-        "note: the windows do not agree: the bonds are not independent, or the time is too short. The row \"rod\" "
-        "leaves out what ends of windows add\n");
+        "note: short and long pieces of the tubes give different stiffnesses: neighbouring bonds are correlated, "
+        "or the time is too short. The row \"rod\" is free of what the ends of the pieces add\n");
   if (f.static_part > much_static)
     fmt::print(
         "note: {:.0f} % of the variance of the bonds does not fluctuate in this time: either the tubes are bent or "

@@ -151,7 +151,7 @@ std::vector<OutputColumn> static_rest_columns() {
           {"stability", "", "stable, unstable or unknown, as in `equilibria.csv`; or not at rest"},
           {"growth_per_ns", "1/ns", "rate of the motion that grows fastest; nan: not known"},
           {"error_per_ns", "1/ns", "smaller rates cannot be told from zero; nan: not known"},
-          {"force_eV_per_nm", "eV/nm", "largest force that is left on what is free"},
+          {"force_eV_per_nm", "eV/nm", "largest force that is left on a free element"},
           {"moment_eV", "eV", "largest moment that is left"},
           {"above_eV", "eV", "energy above that of exact rest, by estimate"},
           {"saddles", "", "saddles of the energy that it left on the way"},
