@@ -28,15 +28,6 @@ constexpr std::int64_t most_atoms = 200000000;
 
 enum class Format { data, dump, xyz };
 
-std::string_view next_word(std::string_view& text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
-  text.remove_prefix(begin);
-  const std::size_t end = std::min(text.find_first_of(" \t\r"), text.size());
-  const std::string_view word = text.substr(0, end);
-  text.remove_prefix(end);
-  return word;
-}
-
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
   for (std::string_view word = next_word(text); !word.empty(); word = next_word(text)) words.emplace_back(word);
