@@ -103,6 +103,7 @@ RunResult Run::finish() {
   parts_.checkpoints.write_results();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
+  r.remedy = parts_.remedy;
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
     const bool whole =
