@@ -599,6 +599,8 @@ void add_import(CLI::App& app, Verbs& v) {
   CLI::App* c =
       app.add_subcommand("import", "Take what LAMMPS has done into the run, to observe, report or resume");
   c->add_option("dir", v.from_lammps.dir, "Directory of the export, in which lmp-ropewalk has run")->required();
+  c->add_flag("--accept-changes", v.from_lammps.accept_changes,
+              "Take the states although in.rope, or what it reads, is not what was exported");
   c->callback([&v] { v.code = import_command(v.from_lammps); });
 }
 

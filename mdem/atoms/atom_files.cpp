@@ -46,10 +46,7 @@ bool is_carbon_mass(double mass) { return std::fabs(mass - units::carbon_atomic_
 // Lines of a file with their numbers.
 class Lines {
  public:
-  explicit Lines(const std::string& path) : path_(path), file_(path) {
-    refuse_devices(path);
-    if (!file_) throw file_error(path, "cannot be opened", errno);
-  }
+  explicit Lines(const std::string& path) : path_(path), file_(opened_stream(path)) {}
   bool next() {
     if (!std::getline(file_, line_)) {
       if (file_.bad()) throw file_error(path_, "cannot be read", EIO);

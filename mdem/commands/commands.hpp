@@ -283,6 +283,7 @@ int coarsen_command(const CoarsenArguments& arguments);
 
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
+  bool accept_changes = false;  // of in.rope and what it reads
 };
 int import_command(const ImportArguments& arguments);
 
