@@ -120,6 +120,7 @@ struct Stiffness {
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
+  double sublattice_turn = 0, sublattice_rise = 0;  // rad and nm, of the second one in the relaxed tube
   double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
   Measured stretch_cubic;  // eV/nm, of e^3
