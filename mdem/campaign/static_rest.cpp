@@ -11,6 +11,7 @@
 #include "model/error.hpp"
 #include "observe/mode_shape.hpp"
 #include "sim/dynamics/modes.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/load_steps.hpp"
 #include "sim/statics/newton.hpp"
 #include "sim/statics/stiffness.hpp"
@@ -50,14 +51,6 @@ Simulation simulation_of(const Scene& scene, Prepared prepared, const State* beg
   return start(scene, prepared);
 }
 
-std::string why_not(const Statics& end, const Simulation& s) {
-  if (const std::string bond = overloaded_bond(s); !bond.empty()) return bond;
-  if (end.end == Statics::End::refused) return "no step of Newton's method is short enough";
-  if (end.end == Statics::End::interrupted) return "it was stopped";
-  return fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force,
-                     end.newton_steps);
-}
-
 LogRow row_of(const MovingScene& m) {
   return log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account());
 }
@@ -84,7 +77,7 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
   StaticRest out;
   out.from = from;
   out.at_rest = end.relaxed.at_rest;
-  if (!out.at_rest) out.why = why_not(end, s);
+  if (!out.at_rest) out.why = end_words(s, end, how.fire, false).why;
   const LogRow row = row_of(moving);
   out.twist = row["geometric_twist_deg"];
   out.beta = row["beta_deg"];

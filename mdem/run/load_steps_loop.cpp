@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "sim/dynamics/end_drives.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/load_steps.hpp"
 #include "sim/statics/stability.hpp"
 
@@ -120,14 +121,13 @@ std::string LoadStepsLoop::load_words(double time) const {
   return fmt::format("{:.4g} ps", time);
 }
 
-std::string LoadStepsLoop::words_of_end(const Statics& end) const {
+std::string LoadStepsLoop::words_of_end(const Statics& end) {
   if (next() == times_.size()) return "";
-  const Simulation& s = run_.moving.simulation;
-  std::string words = fmt::format("; none was found at the next one, {}: ", load_words(times_[next()]));
-  if (const std::string bond = overloaded_bond(s); !bond.empty()) return words + bond;
-  if (end.end == Statics::End::refused)
-    return words + "Newton's method finds no step, as at a fold, where a branch of equilibrium states ends";
-  return words + fmt::format("{:.2g} eV/nm are left", end.relaxed.force);
+  const bool by_fire = run_.moving.scene.run.solver == RunOptions::Solver::automatic;
+  const EndWords words = end_words(run_.moving.simulation, end, by_fire, !begins());
+  if (!words.remedy.empty())
+    run_.remedy = words.remedy + "; equilibria.csv has the states of rest up to here";
+  return fmt::format("; none was found at the next one, {}: {}", load_words(times_[next()]), words.why);
 }
 
 std::string LoadStepsLoop::words_of_curve() const {

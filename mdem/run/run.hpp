@@ -28,6 +28,7 @@ struct RunResult {
   RunEnd end = RunEnd::finished;
   RunDirectory directory;
   std::string reason;                // in words
+  std::string remedy;                // of a relaxation that resuming does not bring to rest
   std::string passed;                // limits, in words
   std::string beyond_since;          // since when and by which limit, a sentence; empty: within all limits
   std::string worst;                 // how far it was passed, in words

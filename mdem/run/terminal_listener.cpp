@@ -56,7 +56,9 @@ int tell_end(const RunResult& r) {
       return failed_or_incomplete;
     case RunEnd::not_relaxed:
       print_results(r);
-      tell(fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", r.reason, dir));
+      tell(r.remedy.empty()
+               ? fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", r.reason, dir)
+               : fmt::format("{}; {}", r.reason, r.remedy));
       return not_relaxed;
     case RunEnd::at_limit:
       print_news(r);

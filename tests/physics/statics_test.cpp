@@ -11,6 +11,7 @@
 #include "scene/loads/force.hpp"
 #include "scene/loads/torque.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/newton.hpp"
 #include "unit/support.hpp"
 

@@ -7,6 +7,7 @@
 #include "model/contract.hpp"
 #include "model/counter_random.hpp"
 #include "model/error.hpp"
+#include "sim/statics/end_words.hpp"
 
 namespace ropewalk {
 namespace {
@@ -266,29 +267,6 @@ Statics NewtonStatics::follow(double until, const RelaxGoal& goal, const std::fu
       return out.end = Statics::End::interrupted, out;
   }
   return out;
-}
-
-std::string overloaded_bond(const Simulation& s) {
-  constexpr double nearly_slipping = 80 * units::degree;
-  const Topology& topology = s.topology();
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const TubeType& type = topology.type_of(t);
-    const Anharmonic& h = type.bond.anharmonic;
-    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      const Frame a = frame_of(s.state().orientation[i]), b = frame_of(s.state().orientation[i + 1]);
-      const double twist = std::fabs(bond_twist_angle(a, b)), bend = std::acos(std::min(1.0, a.t.dot(b.t)));
-      const double per_length = h.radius / type.element_length;
-      const char* what = h.used && per_length * twist >= h.max_shear ? "has collapsed"
-                         : h.used && per_length * bend >= h.max_bend ? "has kinked"
-                         : twist > nearly_slipping ? "has a bond that slips at a twist of 90 degrees"
-                                                   : nullptr;
-      if (what)
-        return "tube " + std::to_string(t) + " " + what + " at element " +
-               std::to_string(e - topology.tube_begin[t]) + ": the load is more than it bears";
-    }
-  }
-  return "";
 }
 
 Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {

@@ -58,9 +58,6 @@ struct Statics {
   long products = 0;
 };
 
-// A bond that has left the window of its data, or is about to slip, in words; empty: there is none.
-std::string overloaded_bond(const Simulation& simulation);
-
 class NewtonStatics {
  public:
   explicit NewtonStatics(Simulation& simulation, const NewtonOptions& options = {});
