@@ -21,15 +21,6 @@
 namespace ropewalk {
 namespace {
 
-// The message with tube, element and clamp in place of the element's number in the scene.
-std::string words_with_place(const NumericalError& e, const Topology& topology, const std::vector<Held>& held) {
-  std::string text = e.what();
-  const std::string number = fmt::format("element {}:", e.element());
-  const std::size_t at = text.find(number);
-  if (e.element() < 0 || e.element() >= topology.elements() || at == std::string::npos) return text;
-  return text.replace(at, number.size(), place_in_words(topology, held, e.element()) + ":");
-}
-
 StopReason go_loop(RunParts& parts) {
   if (parts.moving.scene.statics.steps > 0) return LoadStepsLoop(parts).go();
   return parts.moving.relaxes() ? RelaxationLoop(parts).go() : DynamicsLoop(parts).go();
@@ -167,7 +158,7 @@ RunResult Run::failed(const NumericalError& e) {
     parts_.listener.tell(fmt::format("{}; the last events are missing there", no_room.what()));
   }
   parts_.files.write_failed_state(parts_.moving);
-  const std::string why = words_with_place(e, parts_.moving.prepared.topology, parts_.limits.held());
+  const std::string why = parts_.limits.words_of(e);
   write_end("failed", why);
   RunResult r = result(RunEnd::failed, why);
   add_results(r);
