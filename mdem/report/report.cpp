@@ -1,6 +1,7 @@
 #include "report/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +149,7 @@ std::string balance_words(const ReportInput& in) {
   std::string text = fmt::format("The largest deviation is {} eV.", number_text(largest, 3));
   for (const LimitRecord& r : in.watched.limits)
     if (r.key == "energy_drift" && r.limit > 0)
-      text += fmt::format(" It was at most {} % of the energy that had moved; the limit is {} %.",
+      text += fmt::format(" It was at most {} % of the energy that was converted; the limit is {} %.",
                           number_text(100 * r.largest, 2), number_text(100 * r.limit, 2));
   return text;
 }
@@ -176,9 +177,7 @@ bool is_beyond(const ReportInput& in, double time) {
 
 std::string tag(const ReportInput& in, const std::string& when, double time, double beta) {
   return "<div class=\"tag\">" + when + (in.rope ? " &#160; β = " + degrees(beta) : "") +
-         (is_beyond(in, time) ? " <span class=\"soft\">beyond " + escape_markup(in.results.first_limit) + "</span>"
-                              : "") +
-         "</div>\n";
+         (is_beyond(in, time) ? " <span class=\"soft\">beyond a limit</span>" : "") + "</div>\n";
 }
 
 // --- Radius along the rope ----------------------------------------------------------------------------------
@@ -611,6 +610,38 @@ std::vector<std::string> all_warnings(const ReportInput& in) {
 
 // --- The page -----------------------------------------------------------------------------------------------
 
+bool is_zero(const ReportInput& in, const Panel& panel) {
+  return std::all_of(in.log.begin(), in.log.end(), [&](const LogRow& row) {
+    return std::all_of(panel.traces.begin(), panel.traces.end(), [&](const Trace& t) { return t.value(row) == 0; });
+  });
+}
+
+// Of a rope. Charts that would show a line at zero are named instead.
+std::string shape_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  std::vector<std::string> charts, zero;
+  const auto add = [&](const Panel& panel) {
+    if (is_zero(in, panel))
+      zero.push_back(panel.title);
+    else
+      charts.push_back(log_figure(in, panel, figures));
+  };
+  std::string html;
+  if (any_internal(in.shells))
+    add(packing_charge());
+  else
+    html = paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+  add(twist_angle());
+  add(end_twists());
+  charts.push_back(radius_figure(in, sections, figures));
+  add(amplitude(true));
+  add(windings());
+  charts.erase(std::remove(charts.begin(), charts.end(), ""), charts.end());
+  for (std::size_t k = 0; k < charts.size(); k += 2)
+    html += pair_of(charts[k], k + 1 < charts.size() ? charts[k + 1] : "");
+  if (!zero.empty()) html += paragraph(fmt::format("Zero at all times: {}.", fmt::join(zero, ", ")));
+  return html;
+}
+
 std::string log_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   if (in.log.size() < 2)
     return heading("Course of the run") + paragraph(in.log.empty()
@@ -622,18 +653,8 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   std::string html = loading_part(in, figures) + heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in));
   html += pair_of(bonds, others);
-  const bool packed = any_internal(in.shells);
   if (in.rope) {
-    html += heading("Packing and twist");
-    if (!packed)
-      html +=
-          paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
-    const std::string charge = packed ? panel(packing_charge()) : "", beta = panel(twist_angle());
-    html += pair_of(charge, beta);
-    const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
-    html += pair_of(twists, radius) + heading("Buckling of the rope");
-    const std::string deflection = panel(amplitude(true)), turns = panel(windings());
-    html += pair_of(deflection, turns);
+    html += heading("Packing, twist and shape") + shape_part(in, sections, figures);
   } else {
     html += heading("Shape of the tubes");
     const std::string curved = panel(curvature()), twists = panel(tube_twist());

@@ -364,7 +364,7 @@ TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
   EXPECT_EQ(limit.at("key"), "energy_drift");
   EXPECT_EQ(limit.at("tube"), -1);
   EXPECT_TRUE(limit.at("passed").get<bool>());
-  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("of the energy that had moved; the limit is 1 %"));
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("of the energy that was converted; the limit is 1 %"));
   EXPECT_EQ(run("run long.toml --out e --quiet --on-limit stop").code, 5);
   // It is judged alike after a resume.
   EXPECT_EQ(run("run long.toml --out f --quiet --until 7").code, 0);
