@@ -19,7 +19,10 @@
 #include "scene/state_files.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/dynamics/end_drives.hpp"
 #include "sim/dynamics/shorter_steps.hpp"
+#include "sim/statics/cost.hpp"
+#include "sim/statics/load_steps.hpp"
 
 namespace ropewalk {
 namespace {
@@ -77,6 +80,34 @@ void say_sizes(const Scene& scene, const Prepared& p) {
   const double files = elements * (frames * frame + checkpoints + end) + rows * row + page;
   fmt::print("about {:.2g} MB of memory and {:.2g} MB of files, {:.0f} frames in them\n",
              10 + memory_needed(elements) / 1e6, files / 1e6, frames);
+}
+
+// One state of rest by Newton's method, or a curve of them.
+void say_statics(const Scene& scene, const Simulation& simulation) {
+  const StaticsCost cost = statics_cost(simulation);
+  double seconds = cost.first_seconds + cost.stability_seconds;
+  std::string what = "one state of rest";
+  if (scene.statics.steps > 0) {
+    const std::vector<double> times = load_step_times(simulation.loads(), scene.statics.steps);
+    seconds += static_cast<double>(times.size() - 1) * (cost.next_seconds + cost.stability_seconds);
+    const EndDrives drives = end_drives(simulation.loads(), simulation.topology());
+    what = fmt::format("{} states of rest along the schedules, from {:.4g} to {:.4g} ps in them", times.size(),
+                       times.front(), times.back());
+    if (end_moment(drives))
+      what += fmt::format(", {:.4g} to {:.4g} nN nm", moment_at(drives, times.front()) / units::nN_nm,
+                          moment_at(drives, times.back()) / units::nN_nm);
+  }
+  fmt::print(
+      "{}, by Newton's method to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most "
+      "{} "
+      "steps each\n",
+      what, scene.run.goal.force, scene.run.goal.energy, scene.run.max_steps);
+  const std::string stability = cost.stability_seconds > 0
+                                    ? fmt::format("{:.2g} s each and {:.2g} MB for whether it is stable",
+                                                  cost.stability_seconds, cost.decomposition_bytes / 1e6)
+                                    : "the rope is too thick for the modes that tell whether it is stable";
+  fmt::print("about {:.2g} s in all, {:.2g} MB of memory; {}\n", seconds,
+             10 + (cost.bytes + cost.decomposition_bytes) / 1e6, stability);
 }
 
 // Expectations that were written for another scene than this.
@@ -141,6 +172,10 @@ int check_command(const std::string& path) {
   const Energies& e = simulation.forces().energy;
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
              simulation.largest_force());
+  if (scene.run.mode == RunOptions::Mode::relax && scene.run.solver != RunOptions::Solver::fire) {
+    say_statics(scene, simulation);
+    return 0;
+  }
   if (scene.run.mode == RunOptions::Mode::relax) {
     fmt::print(
         "relaxation to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most {} steps\n",
