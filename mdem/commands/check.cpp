@@ -8,6 +8,7 @@
 #include "commands/commands.hpp"
 #include "io/clocks.hpp"
 #include "plan/forecast.hpp"
+#include "run/accuracy.hpp"
 #include "run/expectations.hpp"
 #include "run/moving_scene.hpp"
 #include "run/run_directory.hpp"
@@ -138,10 +139,32 @@ int check_run(const RunDirectory& run) {
   return missed(all) > 0 ? not_as_expected : 0;
 }
 
+// A run against a finer model.
+int check_accuracy(const CheckArguments& a) {
+  const RunDirectory dir{a.path};
+  const Accuracy accuracy =
+      a.against.empty() ? accuracy_by_stretch(dir, a.stretch) : accuracy_against(dir, {a.against});
+  fmt::print("{}\n{:20} {:>12} {:>12} {:>10}\n", accuracy.against, "", "here", "finer", "error");
+  double largest = 0;
+  for (const auto& [name, v] : accuracy.found) {
+    fmt::print("{:20} {:12.6g} {:12.6g} {:8.2f} %\n", name, v.here, v.finer, 100 * v.error);
+    largest = std::max(largest, v.error);
+  }
+  fmt::print("at most {:.2f} % off\n", 100 * largest);
+  return 0;
+}
+
 }  // namespace
 
-int check_command(const std::string& path) {
-  if (std::filesystem::is_directory(path)) return check_run({path});
+int check_command(const CheckArguments& a) {
+  const std::string& path = a.path;
+  const bool is_run = std::filesystem::is_directory(path);
+  if (a.accuracy && !is_run)
+    throw InputError({"", 0, "--accuracy"}, "is for a run, and " + path + " is none",
+                     "name the directory of a run");
+  if (!a.against.empty() && !a.accuracy)
+    throw InputError({"", 0, "--against"}, "stands without --accuracy", "give both");
+  if (is_run) return a.accuracy ? check_accuracy(a) : check_run({path});
   Scene scene = read_scene(path);
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);

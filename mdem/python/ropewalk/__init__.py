@@ -51,7 +51,7 @@ from .log import Log, Mean  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
 from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
 from .programs import (  # noqa: E402
-    calibrate, compare, convert, errors, gather, modes, parametrize, picture, plan, rest, sweep, threshold,
+    calibrate, compare, convert, errors, gather, modes, parametrize, picture, rest, sweep, threshold,
     validate, view,
 )
 from .results import Campaign, Check, ValidationCase  # noqa: E402
@@ -66,7 +66,7 @@ __all__ = [
     "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit", "Log",
     "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
     "Simulation", "State", "StateEnergy", "ValidationCase", "calibrate", "compare", "convert", "energy", "errors", "gather",
-    "modes", "observables", "open", "parameter_sets", "parametrize", "picture", "plan", "rest", "resume", "run", "set_threads", "sweep",
+    "modes", "observables", "open", "parameter_sets", "parametrize", "picture", "rest", "resume", "run", "set_threads", "sweep",
     "threads", "threshold", "validate", "view", "write_state",
 ]
 
