@@ -360,9 +360,10 @@ void add_atoms(CLI::App& app, Verbs& v) {
       c->add_option("--frame", v.atoms.frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
   CLI::Option* at =
       c->add_option("--at", v.atoms.at,
-                    "A limit that the run has passed: the place where it did so first, in the last frame "
-                    "before that")
+                    "A limit that the run has passed: the place where it did so first. The run is stepped again to "
+                    "that moment where that takes less than a minute; else the last frame before it is taken")
           ->excludes(frame);
+  c->add_flag("--step-again", v.atoms.step_again, "With --at: step the run again, however long it takes")->needs(at);
   c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
       ->capture_default_str()
       ->check(number_within(Bounds::range(1, 1000)))
@@ -581,6 +582,8 @@ void add_import(CLI::App& app, Verbs& v) {
   CLI::App* c =
       app.add_subcommand("import", "Take what LAMMPS has done into the run, to observe, report or resume");
   c->add_option("dir", v.from_lammps.dir, "Directory of the export, in which lmp-ropewalk has run")->required();
+  c->add_flag("--accept-changes", v.from_lammps.accept_changes,
+              "Take the states although in.rope, or what it reads, is not what was exported");
   c->callback([&v] { v.code = import_command(v.from_lammps); });
 }
 

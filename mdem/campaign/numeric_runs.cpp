@@ -117,6 +117,10 @@ class Planning {
     plan_.what.sources.push_back({"time step", "half-step", second_order, 1,
                                   fmt::format("steps of {:.4g} fs in the place of {:.4g} fs", 0.5 * step, step),
                                   fmt::format("run.time_step_fs = {:.3g}", half_error * step)});
+    if (scene_.bath())
+      plan_.what.remarks.push_back(
+          "A bath: the velocities at the end of a step are too cold, which counts in kinetic_eV as an error of the time "
+          "step; places and energies of bonds are not concerned");
   }
 
   void rate() {

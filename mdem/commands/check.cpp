@@ -13,6 +13,7 @@
 #include "run/moving_scene.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
+#include "run/run_schedule.hpp"
 #include "scene/memory_size.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
@@ -109,6 +110,18 @@ void say_statics(const Scene& scene, const Simulation& simulation) {
                                     : "the rope is too thick for the modes that tell whether it is stable";
   fmt::print("about {:.2g} s in all, {:.2g} MB of memory; {}\n", seconds,
              10 + (cost.bytes + cost.decomposition_bytes) / 1e6, stability);
+}
+
+// Batch systems wait for some seconds after TERM, often 30. `each`: seconds of a step.
+void say_stop(const Simulation& simulation, double each) {
+  constexpr double disk = 1e8, worth_a_word = 2;  // bytes per second, as disks that many share take them; s
+  const double bytes = 2.0 * static_cast<double>(simulation.serialise().size()),  // the state, and one to go back to
+      seconds = std::max(RunSchedule::patience, 2 * each) + bytes / disk;
+  if (seconds < worth_a_word) return;
+  fmt::print(
+      "told to stop, a run ends after about {:.0f} s: it writes its checkpoint of {:.2g} MB first, here counted with "
+      "100 MB per second\n",
+      seconds, bytes / 1e6);
 }
 
 // Expectations that were written for another scene than this.
@@ -214,6 +227,7 @@ int check_command(const CheckArguments& a) {
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
   say_sizes(scene, p);
+  say_stop(simulation, each);
   return 0;
 }
 

@@ -242,15 +242,16 @@ int export_command(const ExportArguments& arguments);
 int cite_command(const std::string& directory);
 
 struct AtomsArguments {
-  std::string path;       // directory of a run, or a state file
-  SingleState state;      // of a state file, but for its source
-  std::string out;        // .data, .xyz or .extxyz
-  long frame = -1;        // of a run; from the end if negative
-  std::string at;         // limit, whose place and time are wanted instead
-  double length = 12;     // nm, of that place
-  std::string tubes;      // "0-18,20"; empty: all
-  std::string between;    // "20,40" nm along each tube; empty: all
-  std::string potential;  // empty: that of the sets
+  std::string path;         // directory of a run, or a state file
+  SingleState state;        // of a state file, but for its source
+  std::string out;          // .data, .xyz or .extxyz
+  long frame = -1;          // of a run; from the end if negative
+  std::string at;           // limit, whose place and time are wanted instead
+  double length = 12;       // nm, of that place
+  bool step_again = false;  // to that moment, however long it takes
+  std::string tubes;        // "0-18,20"; empty: all
+  std::string between;      // "20,40" nm along each tube; empty: all
+  std::string potential;    // empty: that of the sets
   bool relax = false;
   bool force = false;
   bool json = false;
@@ -272,6 +273,7 @@ int coarsen_command(const CoarsenArguments& arguments);
 
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
+  bool accept_changes = false;  // of in.rope and what it reads
 };
 int import_command(const ImportArguments& arguments);
 

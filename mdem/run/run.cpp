@@ -126,7 +126,7 @@ RunResult Run::stopped_at_limit() {
 }
 
 RunResult Run::stopped(RunEnd end) {
-  parts_.checkpoints.write_limits_and_events();  // batch systems wait for some seconds only
+  write_limits();  // no final state, which takes as long as a checkpoint: batch systems wait for some seconds only
   const std::string reason =
       fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
@@ -159,7 +159,11 @@ RunResult Run::refined() {
 
 RunResult Run::failed(const NumericalError& e) {
   write_limits();
-  parts_.files.write_events(parts_.moving);
+  try {
+    parts_.files.write_events(parts_.moving);
+  } catch (const InputError& no_room) {
+    parts_.listener.tell(fmt::format("{}; the last events are missing there", no_room.what()));
+  }
   parts_.files.write_failed_state(parts_.moving);
   const std::string why = words_with_place(e, parts_.moving.prepared.topology, parts_.limits.held());
   write_end("failed", why);

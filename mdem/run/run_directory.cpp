@@ -104,6 +104,7 @@ const std::vector<OutputFile>& run_files() {
        "what friction, links and tethers remember there; it belongs beside `final.csv`"},
       {"failed-state.csv", "run", "the state of a run that failed"},
       {"failed-state-memory.csv", "run", "what friction, links and tethers remember there"},
+      {"found-tubes.csv", "coarsen", "the tubes that were found in the first frame, and their defects"},
       {"sections.csv", "coarsen", "radius, ovality and shear of the elements' atoms, means over the frames"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},

@@ -38,7 +38,7 @@ const char* dissipation_of(const std::vector<Block>& blocks) {
   if (sets("damping", "contact_viscosity_eV_ps_per_nm3", "0") || sets("contact", "law", "\"none\"") ||
       sets("run", "mode", "\"relax\""))
     return "";
-  return "Numerical damping brings it to rest, which atoms do not have: trust where it rests, not the way there.";
+  return "Numerical damping brings it to rest, which atoms do not have: its final state is meaningful, the way there is not.";
 }
 
 std::vector<Block> twisted_rope(const char* length, std::map<std::string, std::string> twist) {
@@ -163,7 +163,7 @@ std::vector<Recipe> recipes() {
       {"bend",
        "37 tubes of 67.8 nm bent by 20 degrees between two clamps, one of which may slide",
        {{"", calibrated()},
-        rope_of("37", "67.8"),
+        {"rope", {{"tubes", "37"}, {"length_nm", "67.8"}, {"perturbation_nm", "0.0005"}}},
         grip("lower", {{"about_y", "{ rotation_deg = -10, rate_deg_per_ps = 0.1 }"}}),
         grip("upper",
              {{"x", "\"free\""}, {"z", "\"free\""}, {"about_y", "{ rotation_deg = 10, rate_deg_per_ps = 0.1 }"}}),
@@ -324,8 +324,8 @@ const Expected all_expected[] = {
 };
 
 // What a template expects ends with the first change of it.
-std::string text_of(const Recipe& recipe, bool brief) {
-  const std::string hash = what_is_run_hash(text_without_expectations(recipe, brief));
+std::string text_with_expectations(const Recipe& recipe) {
+  const std::string hash = what_is_run_hash(text_without_expectations(recipe, false));
   Recipe expecting = recipe;
   for (const Expected& e : all_expected) {
     if (e.kind != std::string(recipe.name)) continue;
@@ -337,13 +337,14 @@ std::string text_of(const Recipe& recipe, bool brief) {
     if (e.at >= 0) block.set["at_ps"] = as_toml(e.at);
     expecting.blocks.push_back(std::move(block));
   }
-  return text_without_expectations(expecting, brief);
+  return text_without_expectations(expecting, false);
 }
 
 std::vector<SceneTemplate> all_templates() {
   std::vector<SceneTemplate> out;
   for (const Recipe& r : recipes())
-    out.push_back({r.name, r.description, dissipation_of(r.blocks), text_of(r, false), text_of(r, true)});
+    out.push_back({r.name, r.description, dissipation_of(r.blocks), text_with_expectations(r),
+                   text_without_expectations(r, true)});
   return out;
 }
 

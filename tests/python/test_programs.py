@@ -143,9 +143,14 @@ class ProgramsTest(FolderTest):
         tube = ropewalk.ParameterSet("cnt-10-10-tersoff")
         other = tube.changed(EA=650, out="mine.toml")
         self.assertEqual((other.name, other["bond.EA"].value, other["bond.EA"].origin), ("mine", 650, "chosen"))
-        changed = ("bond.EA", "bond.pull.end")  # the pull goes on from EA, and is left out
+        changed = ("bond.EA",)
         self.assertEqual({k: v for k, v in other.items() if k not in changed},
                          {k: v for k, v in tube.items() if k not in changed})
+        with open(tube.path) as file, open("older.toml", "w") as older:
+            older.writelines(line for line in file if not line.startswith(("start ", "edge_force ")))
+        self.assertNotIn("bond.pull.edge_force", ropewalk.ParameterSet("older.toml"))
+        again = ropewalk.ParameterSet("older.toml").changed(EA=650, out="mine-too.toml")
+        self.assertAlmostEqual(again["bond.pull.edge_force"].value, other["bond.pull.edge_force"].value, places=9)
         scene = ropewalk.Scene({**ROPE, "parameters": "mine.toml"})
         self.assertEqual(ropewalk.run(scene, "run").status, "finished")
         for changes, words in (({"EB": 1, "out": "b.toml"}, "no number"), ({"EA": 1, "out": "mine.toml"}, "exists"),
