@@ -7,6 +7,7 @@
 
 #include "commands/commands.hpp"
 #include "io/clocks.hpp"
+#include "observe/rope_size.hpp"
 #include "plan/forecast.hpp"
 #include "run/accuracy.hpp"
 #include "run/expectations.hpp"
@@ -50,6 +51,11 @@ void say_source(const Scene& scene, const Prepared& p) {
                set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
                set.bond.twist * units::eV_in_nN_nm, scene.bond.anharmonic ? "anharmonic" : "harmonic");
   for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
+  if (t.tubes() > 1)
+    if (const std::string size =
+            size_words(rope_size(t, packing_cells(t, p.spacing, p.interaction.law.get()), scene.run.mass_scale));
+        !size.empty())
+      fmt::print("{}\n", size);
   fmt::print("contact law {}", scene.contact.law);
   if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
     fmt::print(", {} nodes on an element", line->nodes());

@@ -141,10 +141,11 @@ struct CompareArguments {
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
-  double mean_ps = 0;    // the table has means over the last so much time; 0: the last rows
-  bool tensile = false;  // strength, toughness and so on of runs that pull a rope
-  bool torsion = false;  // the largest torque and what came with it, of runs that twist a rope
-  std::string svg, csv;  // write these files instead of a page
+  double mean_ps = 0;           // the table has means over the last so much time; 0: the last rows
+  bool tensile = false;         // strength, toughness and so on of runs that pull a rope
+  bool torsion = false;         // the largest torque and what came with it, of runs that twist a rope
+  double yarn_diameter_um = 0;  // with --tensile, turns per metre of such a yarn; 0: none
+  std::string svg, csv;         // write these files instead of a page
 };
 int compare_command(const CompareArguments& arguments);
 int compare_runs(const CompareArguments& arguments);

@@ -38,7 +38,8 @@ void refuse_scene(const std::string& file, const Scene& scene, const Simulation&
                  "run the scene without [thermostat] until it rests");
   if (s.loads().spin_relaxation_interval() > 0)
     throw refuse(file, "twist.geometric_only",
-                 "takes the tubes' own twist away from time to time, which no tangent has", "take it away");
+                 "takes the twist of the tubes away from time to time, so that there is no state at rest",
+                 "take it away");
   if (scene.damping.local != 0) throw refuse(file, "damping.pfc_local", "has no derivative at rest", "set it to 0");
 }
 

@@ -42,7 +42,8 @@ void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory,
                fmt::format("{:.4g} ± {:.1g}", s.to_twist.limit, s.to_twist.error()),
                fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most), s.Q, s.branch());
   fmt::print(
-      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
+      "they do not touch\n",
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
@@ -55,7 +56,8 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
     fmt::print("  {}\n", r.at_rest ? r.stability.words() : "not at rest: " + r.why);
   }
   fmt::print(
-      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
+      "they do not touch\n",
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 

@@ -36,7 +36,7 @@ std::vector<OutputColumn> rest_columns() {
        "stable: no motion grows faster than the error of its rate; unstable: one does; unknown: it cannot be told"},
       {"growth_per_ns", "1/ns", "rate of the motion that grows fastest, negative: all decay; nan: not known"},
       {"error_per_ns", "1/ns", "smaller rates cannot be told from zero; nan: not known"},
-      {"force_eV_per_nm", "eV/nm", "largest force that is left on what is free"},
+      {"force_eV_per_nm", "eV/nm", "largest force that is left on a free element"},
       {"moment_eV", "eV", "largest moment that is left"},
       {"above_eV", "eV", "energy above that of exact rest, by estimate"},
       {"saddles", "", "saddles of the energy that it left on the way from the state before"}};

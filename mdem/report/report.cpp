@@ -423,8 +423,8 @@ std::string passed_words(const LimitRecord& r) {
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
-      "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the "
-      "parameter set gives as the limits of the model; what they do is not to be trusted.");
+      "Bonds of the model stay elastic at any deformation, and real tubes do not. The bonds listed here are beyond "
+      "the limits of the parameter set: their forces are not those of tubes.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
@@ -481,13 +481,11 @@ std::string whole_errors(const ReportInput& in) {
   const NumericRuns& runs = in.whole.runs();
   std::string html = paragraph(
       "The whole error of each result, and what decides it: statistics, the scatter of runs from other starts with "
-      "other "
-      "random numbers; numerics, from runs with half the element length, half the time step and half the rate of "
-      "all that is prescribed; parameters, the standard errors of the inputs; and potential, by how far four "
-      "potentials of "
-      "carbon lie apart. The bands of the charts are all of them together; errors-statistics.csv, "
-      "errors-numerics.csv, "
-      "errors.csv and errors-potential.csv have every row. What the model itself leaves out is not in them.");
+      "other random numbers; numerics, from runs with half the element length, half the time step and half the "
+      "rate of all that is prescribed; parameters, the standard errors of the inputs; and potential, the spread "
+      "between four interatomic potentials of carbon. The bands of the charts are all of them together; "
+      "errors-statistics.csv, errors-numerics.csv, errors.csv and errors-potential.csv have every row. What the "
+      "model itself leaves out is not in them.");
   std::vector<ReportFact> facts;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -519,10 +517,10 @@ std::string carried_errors(const ReportInput& in) {
     names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
   std::string html = paragraph(
       "Two standard errors that follow from the parameters alone: ± that of the inputs, " + escape_markup(names) +
-      ", and ± that of the interatomic potential, by how far four potentials of carbon lie apart. The bands "
-      "of the charts are both together. The run was repeated with each parameter changed; errors.csv and "
-      "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time "
-      "step, length of the elements, rate of loading and noise.");
+      ", and ± that of the interatomic potential, from the spread between four potentials of carbon. The bands of "
+      "the charts are both together. The run was repeated with each parameter changed; errors.csv and "
+      "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time step, "
+      "length of the elements, rate of loading and noise.");
   std::vector<ReportFact> facts;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -589,12 +587,12 @@ std::string observables_part(const ReportInput& in) {
   }
   html += "</tbody></table></div>\n";
   if (timed)
-    html += paragraph(fmt::format(
-        "A mean stands where the last half of the run has enough independent values for its error; a value that "
-        "drifts "
-        "has none.{}",
-        needed > 0 ? fmt::format(" The others would need up to {} ps that are like these.", number_text(needed, 2))
-                   : ""));
+    html += paragraph(
+        fmt::format("A mean is given where the last half of the run has enough independent values to estimate its "
+                    "error, and where the value does not drift.{}",
+                    needed > 0 ? fmt::format(" The others would need a run of up to {} ps at the same conditions.",
+                                             number_text(needed, 2))
+                               : ""));
   return zero.empty() ? html
                       : html + "<p class=\"soft\">Zero, or without a value, in all rows: " + zero + ".</p>\n";
 }

@@ -117,7 +117,7 @@ std::string LoadStepsLoop::words_of_curve() const {
   else if (!found_.empty() && count(Equilibrium::Stability::unknown) == 0)
     words += ", all stable";
   if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
-    words += fmt::format("; of {} it cannot be told whether they are stable", unknown);
+    words += fmt::format("; the stability of {} is not known", unknown);
   return words;
 }
 

@@ -588,7 +588,7 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
   const std::string report = slurp(dir / "d/report.html");
   EXPECT_NE(report.find("Parameters cnt-20-20-tersoff are limited: 2.75 nm wide"), std::string::npos);
   EXPECT_NE(report.find("has a standard deviation of 0.73 % of the well"), std::string::npos);
-  EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of as many tubes lie at random"),
+  EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of this size have random registries"),
             std::string::npos);
   const Outcome plan = run("plan s.toml --error 5%");
   EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
@@ -1253,7 +1253,7 @@ duration_ps = 10
   const std::string changed = slurp(dir / "r/errors/friction-strength-plus/changed.toml");
   EXPECT_NE(changed.find("# friction.strength changed by +11.2 %"), std::string::npos) << changed;
   const Outcome table = run("errors r --quiet");
-  EXPECT_NE(table.out.find("No error is stated of, and none carried from: damping.contact"), std::string::npos)
+  EXPECT_NE(table.out.find("Taken as exact, since no error is stated: damping.contact"), std::string::npos)
       << table.out;
   EXPECT_EQ(table.out.find("0.000000000"), std::string::npos) << "zero by symmetry";
 }

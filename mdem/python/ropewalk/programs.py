@@ -343,7 +343,7 @@ def errors(
     jobs: Optional[int] = None,
     again: bool = False,
 ) -> dict[str, Any]:
-    """Errors of a finished run's results that follow from those of its sets, files of friction and typed numbers, as
+    """Error bars of a finished run, from the standard errors of its parameter sets, friction files and scene numbers, as
     `ropewalk errors`, which repeats the run: what `--json` says, with units in the names.
 
     Arguments:

@@ -31,13 +31,16 @@ namespace ropewalk {
 class PeriodicLoad : public Load {
  public:
   int images = 0;                        // elements at each end of a tube; 0: as the contact needs
-  std::vector<Schedule::Point> twist;    // rad/nm
+  std::vector<Schedule::Point> twist;    // rad/nm; from the start, or chosen by turns
+  std::vector<Schedule::Point> turns;    // 1/nm, of a yarn whose surface has the angle of this one; none: by twist
+  double yarn_diameter = 0;              // nm; 0: none is typed
   std::vector<Schedule::Point> strain;   // of the period; none: it stays
   std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
 
-  // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres. Throws
-  // InputError where the images do not reach as far.
-  PeriodicLoad on_tubes(const Topology& topology, double reach, const std::string& path) const;
+  // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres; `rim`
+  // (nm): where the axes of the outermost tubes stand, for turns. Throws InputError where the images do not reach
+  // as far.
+  PeriodicLoad on_tubes(const Topology& topology, double reach, double rim, const std::string& path) const;
   // Winds straight tubes evenly about the z axis where the slice is twisted from the start.
   void wind(State&) const;
   // Puts the images where they belong.
