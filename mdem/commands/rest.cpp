@@ -52,7 +52,7 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
              "left, eV/nm", "left, eV", "branch");
   for (const StaticRest& r : rests) {
     fmt::print("{:<16} {:>12.6g} {:>10.4g} {:>6.3g} {:>12.1e} {:>10.1e}  {}\n", r.from, r.twist, r.beta, r.Q,
-               r.force, r.above, r.branch());
+               r.found.force, r.found.above, r.branch());
     fmt::print("  {}\n", r.at_rest ? r.stability.words() : "not at rest: " + r.why);
   }
   fmt::print(

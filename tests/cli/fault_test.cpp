@@ -458,43 +458,6 @@ class FaultsOfProcesses : public Faults {
   }
 };
 
-TEST_F(FaultsOfProcesses, PlanBrokenOff) {
-  spit(dir / "s.toml", calm);
-  // The times are new each time.
-  const auto without_times = [](const std::string& text) {
-    return std::regex_replace(text, std::regex("# plan: seconds [^\n]*"), "");
-  };
-  break_off_everywhere({"plan s.toml -o d/planned.toml -j 1 --pilot-seconds 120",
-                        {"planned.toml"},
-                        [&] { begin(""); },
-                        23,
-                        without_times,
-                        0,
-                        true});
-}
-
-// The disk of TMPDIR is full where a pilot's directory is to be made: no model is refused by that.
-TEST_F(FaultsOfProcesses, PlanWithoutRoomForAPilot) {
-  spit(dir / "s.toml", calm);
-  setenv("ROPEWALK_FAULTS_CALL", "mkdir", 1);
-  setenv("ROPEWALK_FAULTS_TOGETHER", (dir / "together").c_str(), 1);
-  int pilots = 0;
-  for (int n = 1;; ++n) {
-    begin("");
-    fs::create_directories(dir / "d/t");
-    for (const char* name : {"made", "together", "planned.toml"}) fs::remove(dir / name);
-    const Outcome o = with(fmt::format("ENOSPC:{}", n), "plan s.toml -o planned.toml -j 1 --pilot-seconds 120");
-    if (!fs::exists(dir / "made")) break;
-    EXPECT_EQ(o.code, 3) << n << o.err;
-    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << n << o.err;
-    EXPECT_FALSE(fs::exists(dir / "planned.toml")) << n;
-    EXPECT_THAT(temporary_folders(), ::testing::IsEmpty()) << n;
-    pilots +=
-        o.err.find("was broken off: ") != std::string::npos && o.err.find("No space left") != std::string::npos;
-  }
-  EXPECT_GT(pilots, 0);
-}
-
 TEST_F(FaultsOfProcesses, ThresholdBrokenOff) {
   spit(dir / "tube.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 1\nlength_nm = 6.78\n"
