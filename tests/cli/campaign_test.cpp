@@ -614,6 +614,10 @@ TEST_F(Campaign, StaticRestIsTheSameFromBothSides) {
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   const Json found = Json::parse(o.out);
   EXPECT_EQ(found, Json::parse(slurp(dir / "still/static-rest.json")));
+  // A command that was killed between its two files is given again; one whose files are there does nothing.
+  fs::remove(dir / "still/static-rest.json");
+  EXPECT_EQ(run("rest rope.toml --static --out still --quiet").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_EQ(run("rest rope.toml --static --out still --quiet").code, 2);
   ASSERT_EQ(found.at("states").size(), 2u) << o.out;
   const Json &below = found.at("states")[0], &above = found.at("states")[1];
   EXPECT_GT(below.at("geometric_twist_deg").get<double>(), 10);

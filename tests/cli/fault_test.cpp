@@ -338,6 +338,26 @@ TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
   }
 }
 
+// Files that belong together are all there, or none is.
+TEST_F(Faults, AtomsWithoutRoomLeaveNoneOfTheirFiles) {
+  spit(dir / "s.toml", calm);
+  ASSERT_EQ(run("run s.toml --out ready --quiet").code, 0) << slurp(dir / "stderr.txt");
+  setenv("ROPEWALK_FAULTS_CALL", "write", 1);
+  for (long n = 1;; ++n) {
+    fs::remove_all(dir / "d");
+    fs::create_directories(dir / "d");
+    const Outcome o = with(fmt::format("ENOSPC:{}:on", n), "atoms ready -o d/a.data");
+    if (o.code == 0) {
+      EXPECT_GT(n, 2);
+      EXPECT_TRUE(fs::exists(dir / "d/a.data") && fs::exists(dir / "d/a-elements.csv"));
+      break;
+    }
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_TRUE(fs::is_empty(dir / "d")) << n;
+  }
+  unsetenv("ROPEWALK_FAULTS_CALL");
+}
+
 // A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its
 // files are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary
 // folder.
