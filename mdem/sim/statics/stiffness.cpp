@@ -235,7 +235,7 @@ std::optional<BlockMatrix> damping_blocks(const Simulation& s) {
     const TubeType& type = topology.type_of(t);
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
       const Vector3 x = s.state().position[static_cast<std::size_t>(i)];
-      const auto to = [&](int j) { return Vector3(s.state().position[static_cast<std::size_t>(j)]) - x; };
+      const auto to = [&](int j) -> Vector3 { return s.state().position[static_cast<std::size_t>(j)] - x; };
       if (in.damping.bond.rate > 0 && i + 1 < topology.tube_begin[t + 1]) {
         const PairRows slip = sliding(to(i + 1)), spin = spinning();
         const double half = 0.5 * in.damping.bond.rate;
