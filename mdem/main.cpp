@@ -74,12 +74,12 @@ struct Verbs {
   RestArguments rest;
   ModesArguments modes;
   GatherArguments gather;
-  PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
   AtomsArguments atoms;
   CoarsenArguments coarsen;
-  std::string check_scene, help_topic, cited_run;
+  CheckArguments check;
+  std::string help_topic, cited_run;
   int code = 0;
 };
 
@@ -142,9 +142,16 @@ void add_check(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "check",
       "Read a scene, say what it would do and how long it would take; or judge a run by the [[expect]] "
-      "tables of its scene");
-  c->add_option("scene", v.check_scene, "Scene file (TOML), or the directory of a finished run")->required();
-  c->callback([&v] { v.code = check_command(v.check_scene); });
+      "tables of its scene, or by a finer model");
+  c->add_option("scene", v.check.path, "Scene file (TOML), or the directory of a finished run")->required();
+  c->add_flag("--accuracy", v.check.accuracy,
+              "Of a run: go on for a stretch with its model and with a finer one, and say how far it is off");
+  c->add_option("--stretch", v.check.stretch, "With --accuracy: ps that both models go on")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive()));
+  c->add_option("--against", v.check.against,
+                "With --accuracy: directory of a run of the same scene by a finer model, in place of the stretch");
+  c->callback([&v] { v.code = check_command(v.check); });
 }
 
 void add_run(CLI::App& app, Verbs& v) {
@@ -255,9 +262,7 @@ void add_resume(CLI::App& app, Verbs& v) {
 }
 
 void add_observe(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand(
-      "observe",
-      "Measure the stored frames of a run: twist, packing, shape; a planned run also against a finer model");
+  CLI::App* c = app.add_subcommand("observe", "Measure the stored frames of a run: twist, packing, shape");
   c->add_option("dir", v.observe.dir, "Directory of the run");
   c->add_flag("--list", v.observe.list, "List the observables: name, unit, meaning (Markdown)");
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
@@ -561,37 +566,13 @@ void add_gather(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = gather_command(v.gather); });
 }
 
-void add_plan(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand(
-      "plan", "Choose the cheapest model whose error is small enough, by short trial runs of the scene (pilots)");
-  c->add_option("scene", v.plan.scene, "Scene file (TOML)");
-  c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
-  c->add_option("--observables", v.plan.observables,
-                "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
-      ->delimiter(',');
-  c->add_flag("--end-state", v.plan.end_state, "Only the final state matters, not the motion");
-  c->add_option(
-       "--pilot-seconds", v.plan.pilot_seconds,
-       "Processor time for all pilots, roughly; with enough of it they are as large as the scene [default: a tenth "
-       "of "
-       "the time of the runs or 5 s for a look at the default model; then as much again, or a minute of each core]")
-      ->check(number_within(Bounds::positive()));
-  c->add_option("--runs", v.plan.runs, "Number of runs that will use the plan: many runs are worth longer pilots")
-      ->capture_default_str()
-      ->check(whole_number(1, 1000000));
-  c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
-  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
-      ->check(whole_number(1, 4096));
-  c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
-  c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
-  c->add_option("--finest", v.plan.finest,
-                "Also write the scene with the finest model that was tried to this file");
-  c->add_option("--stretch", v.plan.stretch, "With --check: time for which both models go on, ps")
-      ->capture_default_str()
-      ->check(number_within(Bounds::positive()));
-  c->callback([&v] {
-    wait_briefly(v.argv, threads_beside(v.plan.jobs));
-    v.code = plan_command(v.plan);
+// A verb of earlier versions.
+void add_plan(CLI::App& app) {
+  CLI::App* c = app.add_subcommand("plan", "")->group("");
+  c->allow_extras();
+  c->callback([] {
+    throw InputError({"", 0, "plan"}, "is no verb any more: the default model is what it chose in most scenes",
+                     "run the scene, and hold the run against a finer model: ropewalk check RUN --accuracy");
   });
 }
 
@@ -769,7 +750,7 @@ int main(int argc, char** argv) {
   add_modes(app, verbs);
   add_gather(app, verbs);
   add_cite(app, verbs);
-  add_plan(app, verbs);
+  add_plan(app);
   add_export(app, verbs);
   add_import(app, verbs);
   add_atoms(app, verbs);

@@ -30,10 +30,8 @@ const char* name_of(Equilibrium::Stability stability) {
   return "";
 }
 
-std::vector<OutputColumn> equilibria_columns() {
+std::vector<OutputColumn> rest_columns() {
   return {
-      {"step", "", "of the row of log.csv with this state"},
-      {"time_ps", "ps", "in the schedules of the scene"},
       {"stability", "",
        "stable: no motion grows faster than the error of its rate; unstable: one does; unknown: it cannot be told"},
       {"growth_per_ns", "1/ns", "rate of the motion that grows fastest, negative: all decay; nan: not known"},
@@ -44,11 +42,22 @@ std::vector<OutputColumn> equilibria_columns() {
       {"saddles", "", "saddles of the energy that it left on the way from the state before"}};
 }
 
+std::string rest_cells(const Equilibrium& e) {
+  return fmt::format("{},{},{},{},{},{},{}", name_of(e.stability), e.growth, e.error, e.force, e.moment, e.above,
+                     e.saddles);
+}
+
+std::vector<OutputColumn> equilibria_columns() {
+  std::vector<OutputColumn> all = {{"step", "", "of the row of log.csv with this state"},
+                                   {"time_ps", "ps", "in the schedules of the scene"}};
+  const std::vector<OutputColumn> of_rest = rest_columns();
+  all.insert(all.end(), of_rest.begin(), of_rest.end());
+  return all;
+}
+
 std::string equilibria_csv(const Equilibria& all) {
   std::string text = column_names(equilibria_columns()) + "\n";
-  for (const Equilibrium& e : all)
-    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", e.step, e.time, name_of(e.stability), e.growth, e.error,
-                        e.force, e.moment, e.above, e.saddles);
+  for (const Equilibrium& e : all) text += fmt::format("{},{},{}\n", e.step, e.time, rest_cells(e));
   return text;
 }
 

@@ -10,7 +10,6 @@
 #include "run/dynamics_loop.hpp"
 #include "run/load_steps_loop.hpp"
 #include "run/pending_files.hpp"
-#include "run/plan_check.hpp"
 #include "run/refined_run.hpp"
 #include "run/relaxation_loop.hpp"
 #include "run/results.hpp"
@@ -100,7 +99,6 @@ RunResult Run::finish() {
     const bool whole =
         parts_.moving.relaxes() || !parts_.reason.empty() || parts_.step() >= parts_.schedule.scene_end();
     if (whole) r.expected = judge(parts_.moving.scene.expected, r.directory);
-    r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
     add_results(r);
   } else {
     r.end = RunEnd::incomplete;

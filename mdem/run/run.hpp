@@ -36,7 +36,6 @@ struct RunResult {
   std::vector<std::string> results;  // a sentence each
   std::string damping;               // its part of the lost energy, in words
   std::string network;               // of a film at its end, in words
-  std::string plan;                  // planned and seen errors, in words
   std::vector<Judgement> expected;   // of the [[expect]] tables
   std::string missing;               // files
   std::int64_t steps = 0;

@@ -111,8 +111,7 @@ void Run::restore(RunCheckpoint c) {
     p.rollback.take_snapshot();
   // Files of the earlier end; the next end writes them again.
   std::error_code ignored;
-  for (const std::string& path : {dir.final_state(), dir.final_memory(), dir.plan_check()})
-    std::filesystem::remove(path, ignored);
+  for (const std::string& path : {dir.final_state(), dir.final_memory()}) std::filesystem::remove(path, ignored);
 }
 
 // The checkpoint may be of a scene with another time step, which then stays.

@@ -22,7 +22,6 @@ void print_results(const RunResult& r) {
   if (!r.passed.empty()) print(fmt::format("Limits passed: {}\n", r.passed));
   if (!r.network.empty()) print("At the end " + r.network + ".\n");
   if (!r.damping.empty()) print(r.damping + "\n");
-  if (!r.plan.empty()) print(r.plan + "\n");
   for (const Judgement& j : r.expected) print(j.words + "\n");
   const std::string time = r.relaxes ? "" : fmt::format("{:.1f} ps, ", r.time_ps);
   print(fmt::format("{}{} steps, {}{:.0f} s. Report: {}\n", r.reason.empty() ? "" : r.reason + "\n", r.steps, time,

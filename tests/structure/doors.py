@@ -48,7 +48,6 @@ CALL = re.compile(r"\b(?:write_file_atomically|opened_to_write|GrowingFile|frame
 FOLDER = "in a folder that was made for these files"
 RESULT = "a result, which the manual names and which replaces no file of another kind"
 MAY_APPEND = {
-    "mdem/campaign/pilot_runs.cpp": FOLDER,
     "mdem/commands/convert.cpp": FOLDER,
     "mdem/atoms/lammps.cpp": FOLDER,
     "calibrate/friction/sliding.cpp": FOLDER,

@@ -12,7 +12,6 @@
 #include "report/report.hpp"
 #include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
-#include "run/plan_check.hpp"
 #include "run/results.hpp"
 #include "run/run_directory.hpp"
 #include "scene/ends/periodic.hpp"
@@ -171,8 +170,6 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.errors = read_run_errors(dir.path, in.log);
   in.whole = read_numeric_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
-  if (const std::string words = plan_words(dir, scene, m); !words.empty())
-    in.error_bars.insert(in.error_bars.begin(), words);
   in.ramp_end_ps = whole_from(end_drives(p.loads, p.topology));
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;

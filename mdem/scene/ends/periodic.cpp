@@ -180,6 +180,10 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
              "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
     if (drive->ends() == Ends::clamped) refuse(drive->table().header(), "the slice has no ends to be clamped");
   }
+  if (scene.run.mode == RunOptions::Mode::relax && scene.run.solver == RunOptions::Solver::fire)
+    throw top.table("periodic")
+        .error("", "does not go with run.solver = \"fire\": forces on images are not those of a slice's energy",
+               "take solver = \"newton\", or mode = \"dynamics\"");
   if (scene.kind != "rope") refuse("[" + scene.kind + "]", "tubes must be parallel and alike; it needs a [rope]");
   const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
   if (load.turns.empty() || !rope) return;
@@ -267,6 +271,11 @@ std::optional<LoadEffect> PeriodicLoad::effect() const {
   return out;
 }
 
+std::string PeriodicLoad::needs_time() const {
+  const bool moves = !Schedule(twist).constant() || !Schedule(strain).constant() || !Schedule(tension).constant();
+  return moves ? "the images of a periodic slice follow it in time" : "";
+}
+
 std::vector<int> PeriodicLoad::reads(const Topology& topology) const {
   std::vector<int> originals;
   for (const int image : elements) originals.push_back(topology.original_of(image));
@@ -346,14 +355,20 @@ PeriodicLoad::Length PeriodicLoad::measured(const Topology& topology, const Stat
   return {sum.now / mass, sum.rate / mass};
 }
 
+// Before all motion (sim/dynamics/loads.hpp) the schedules stand.
+PeriodicLoad::When PeriodicLoad::when(double time, double ahead, const State& s) {
+  const bool still = time < 0;
+  return {still ? s.time : time, 2 * ahead, still};
+}
+
 // A length that no tension has moved is that of its schedule to the last digit.
-PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift, const State& s,
+PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, const When& w, const State& s,
                                                 double more) const {
-  const double then = time + drift, rate = period_ * stretched_.rate(time);
-  if (tension.empty()) return {period_ * (1 + stretched_.value(then)), rate};
+  const double rate = w.still ? 0 : period_ * stretched_.rate(w.time);
+  if (tension.empty()) return {period_ * (1 + stretched_.value(w.then())), rate};
   const Length now = measured(topology, s);
-  if (is_free(time)) return {now.now + drift * (now.rate + more), now.rate + more};
-  return {now.now + period_ * (stretched_.value(then) - stretched_.value(time)), rate};
+  if (is_free(w.time)) return {now.now + w.drift * (now.rate + more), now.rate + more};
+  return {now.now + period_ * (stretched_.value(w.then()) - stretched_.value(w.time)), rate};
 }
 
 void PeriodicLoad::add_forces(const State&, double time, std::vector<PointLoad>& out) const {
@@ -393,14 +408,15 @@ void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
 }
 
 // So that the drift with these velocities leads to where the image will be.
-void PeriodicLoad::follow(int image, int original, double sign, double time, double drift, const Length& length,
+void PeriodicLoad::follow(int image, int original, double sign, const When& when, const Length& length,
                           State& s) const {
+  const double drift = when.drift;
   const auto i = static_cast<std::size_t>(image), o = static_cast<std::size_t>(original);
   const Vector3 v = s.velocity[o], w = s.angular_velocity[o], x = s.position[o];
-  const double turned = sign * period_ * schedule_.value(time + drift);
+  const double turned = sign * period_ * schedule_.value(when.then());
   const Eigen::Matrix3d r = about_z(turned);
   if (drift <= 0) {
-    const Vector3 spin(0, 0, sign * period_ * schedule_.rate(time));
+    const Vector3 spin(0, 0, when.still ? 0 : sign * period_ * schedule_.rate(when.time));
     s.velocity.set(i, r * v + spin.cross(r * x) + Vector3(0, 0, sign * length.rate));
     s.angular_velocity.set(i, r * w + spin);
     return;
@@ -417,14 +433,15 @@ void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
     for (const int image : ends_[end]) act(image, topology.original_of(image), end == upper_end ? 1.0 : -1.0);
 }
 
-void PeriodicLoad::lead(const Topology& topology, double time, double drift, const Length& length, State& s) const {
+void PeriodicLoad::lead(const Topology& topology, const When& when, const Length& length, State& s) const {
   for_images(topology,
-             [&](int image, int original, double sign) { follow(image, original, sign, time, drift, length, s); });
+             [&](int image, int original, double sign) { follow(image, original, sign, when, length, s); });
 }
 
 void PeriodicLoad::constrain(const Topology& topology, double time, double ahead, State& s) const {
   check_reach(topology, s);
-  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s), s);
+  const When w = when(time, ahead, s);
+  lead(topology, w, length_after(topology, w, s), s);
 }
 
 // The kick has moved images and originals by the forces on each, and the measured L' with them.
@@ -439,7 +456,8 @@ void PeriodicLoad::constrain_after(const Forces& total, double dt, const Topolog
     mass += topology.type_of_element(image).mass;
   });
   const double more = dt * (pull / topology.groups.period_inertia - moved / mass);
-  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s, more), s);
+  const When w = when(time, ahead, s);
+  lead(topology, w, length_after(topology, w, s, more), s);
 }
 
 void PeriodicLoad::wind(State& s) const {

@@ -378,12 +378,14 @@ def error_by_errors_or_by_hand(case):
     up, down = (case.run(with_value(v).with_keys(run=run)).log for v in (1.1 * value, 0.9 * value))
     log = one.log
     for column, entry in json.loads(said.stdout)["at_the_end"].items():
+        if scene.source == "film" and column in OF_A_ROPE:
+            continue
         here, plus, minus = (x[column][-1] if column in x else math.nan for x in (log, up, down))
         by_hand, bent = 0.5 * abs(plus - minus), 0.5 * abs(plus + minus - 2 * here)
         if bent > by_hand:  # not linear
             by_hand = math.hypot(by_hand, bent)
         if entry["standard_error"] is not None and math.isfinite(by_hand):
-            near(f"error of {column} by {name}.{key}", entry["standard_error"], by_hand, 1e-6, 1e-9 * (1 + abs(here)))
+            near(f"error of {column} by {name}.{key}", entry["standard_error"], by_hand, 1e-4, 1e-8 * (1 + abs(here)))
 
 
 def tables_of(scene, name):

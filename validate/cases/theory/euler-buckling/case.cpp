@@ -41,27 +41,14 @@ CaseResult run(const CaseContext& context) {
                 "Load at which the lowest eigenvalue of the chain's stiffness passes zero.",
                 {theory_curve("pi^2 EI/L^2", lengths.front(), lengths.back(), euler),
                  model_points("loss of stiffness of the chain", lengths, loads)});
-  result.remarks.push_back(
-      "The critical load is where the lowest eigenvalue of the straight chain passes zero, found by bisection. "
-      "Neither a perturbation nor time enters.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "euler-buckling";
-  c.group = Case::Group::theory;
   c.order = 20;
   c.law = Case::Law::none;
-  c.title = "Buckling of a compressed tube";
-  c.why = "Tubes inside a twisted rope are compressed, and buckle by this instability.";
-  c.setup =
-      "Straight {tube} tubes of 16 to 60 bonds under an axial load; the ends stay on the axis and turn freely. "
-      "The lowest eigenvalue of the tangent stiffness of the loaded chain is followed.";
-  c.oracle = "`P = pi^2 EI/L^2`.";
-  c.literature =
-      "S. P. Timoshenko, J. M. Gere, Theory of Elastic Stability, 2nd ed. (McGraw-Hill, 1961); B. Audoly, Y. "
-      "Pomeau, Elasticity and Geometry (Oxford, 2010)";
   c.run = run;
   c.turns_red = {wrong_EI(1.1)};
   return c;

@@ -1,5 +1,5 @@
 // A tube on two supports under a force in its middle, against the Timoshenko beam. This is the worked example of
-// docs/how-to/validation-case.md: in a folder of validate/cases/ it would be one more case of the program.
+// docs/how-to/validation-case.md: its folder in validate/cases/theory/ would be one more case of the program.
 #include <algorithm>
 #include <cmath>
 
@@ -43,23 +43,14 @@ CaseResult run(const CaseContext& context) {
       "Deflection of a tube on two supports", {"place along the tube", "nm"}, {"deflection", "nm"},
       "The force acts in the middle; the ends are held across the tube and turn freely.",
       {theory_curve("Timoshenko beam", 0, length, beam), model_points("chain of elements", place, found)});
-  result.remarks = {"Shear adds `12 EI/(kGA L^2)` times the deflection of the Euler-Bernoulli beam."};
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "simply-supported";
-  c.group = Case::Group::theory;
   c.order = 15;  // after stretch-and-cantilever
   c.law = Case::Law::none;
-  c.title = "Deflection of a tube on two supports";
-  c.why = "A tube of a rope rests on its neighbours and bends where they leave a gap.";
-  c.setup =
-      "A straight (10,10) tube of 20 bonds. Both ends are held across the tube and turn freely; one of them slides "
-      "along it. A force acts across the middle; relaxed to 1e-7 eV/nm.";
-  c.oracle = "`w = F L^3/(48 EI) + F L/(4 kGA)` in the middle.";
-  c.literature = "S. P. Timoshenko, Phil. Mag. 41, 744 (1921), DOI 10.1080/14786442108636264";
   c.run = run;
   c.turns_red = {{wrong_EI(1.1), {"deflection in the middle", "deflection at a quarter"}}};
   c.stays_green = {wrong_EA(1.1), wrong_GJ(0.9), wrong_contact(2)};
