@@ -23,12 +23,11 @@ namespace ropewalk {
 
 // The motions that constraints allow, as coordinates q: u = motions q, in an order along the rope.
 struct Reduction {
-  Tangent::Matrix motions;    // column by column
-  Tangent::Matrix forces;     // row by row: the force on a coordinate, from those on all elements
-  Eigen::VectorXd mass;       // of each coordinate
-  Tangent::Matrix stiffness;  // of what the constraints bear
-  // Coordinates of motions that meet neither stiffness nor, the second ones, damping; of unit mass.
-  std::vector<Eigen::VectorXd> spins, wholes;
+  Tangent::Matrix motions;               // column by column
+  Tangent::Matrix forces;                // row by row: the force on a coordinate, from those on all elements
+  Eigen::VectorXd mass;                  // of each coordinate
+  Tangent::Matrix stiffness;             // of what the constraints bear
+  std::vector<Eigen::VectorXd> neutral;  // coordinates of motions that meet no stiffness, orthonormal by the masses
 };
 
 struct Mode {
@@ -41,7 +40,7 @@ struct Mode {
 struct ModeSearch {
   int count = 12;
   double shift = 0.05;  // 1/ps
-  // Motions that meet no stiffness (Reduction::spins, wholes) are left out of the search, and of the shapes.
+  // Motions that meet no stiffness (Reduction::neutral) are left out of the search, and of the shapes.
   bool without_neutral = false;
 };
 
