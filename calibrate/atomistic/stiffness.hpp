@@ -99,7 +99,8 @@ struct AnharmonicFit {
 
 // The force of a tube that is pulled, at equal steps of strain from the edge of the window to the end.
 struct PullFit {
-  double end = 0;                                // strain; 0: not measured
+  double start = 0, end = 0;                     // strains: max_strain of the window, and the last one; 0: not measured
+  double edge_force = 0;                         // eV/nm, of the bond at `start`
   std::array<Measured, PULL_STEPS + 1> force{};  // eV/nm, of the atoms, without twist
   std::string ended_by;                          // "the force falls"
   double error = 0;                              // largest relative error of the law against energies of the pull

@@ -10,6 +10,8 @@
 #include <tuple>
 
 #include "atoms/atom_files.hpp"
+#include "io/draft.hpp"
+#include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/limits_file.hpp"
@@ -243,16 +245,21 @@ WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& p
     if (!potential.empty()) throw;
     out.not_relaxable = e.what();
   }
-  out.ranges = write_atoms(path, format, atoms, s.title, s.state.time);
+  // All of them, or none.
+  Draft all(path);
+  out.ranges = write_atoms(all, format, atoms, s.title, s.state.time);
   out.atoms = out.ranges.back().last;
   std::string table = "tube,element,first_atom,last_atom\n";
   for (const AtomRange& r : out.ranges) table += fmt::format("{},{},{},{}\n", r.tube, r.element, r.first, r.last);
   out.files = {path, beside(path, "-elements.csv")};
-  write_file_atomically(out.files.back(), table);
-  if (!forces) return out;
-  out.files.push_back(beside(path, "-relax.in"));
-  write_file_atomically(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
-                                                      held_atoms(s, parts, out.ranges)));
+  std::vector<std::pair<std::string, std::string>> beside_it = {{out.files.back(), table}};
+  if (forces) {
+    out.files.push_back(beside(path, "-relax.in"));
+    beside_it.emplace_back(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
+                                                         held_atoms(s, parts, out.ranges)));
+  }
+  write_files_together(beside_it);
+  all.replace();
   return out;
 }
 

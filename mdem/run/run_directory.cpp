@@ -99,7 +99,6 @@ const std::vector<OutputFile>& run_files() {
       {"errors-statistics.csv", "errors", "their errors by other starts and random numbers, as log.csv"},
       {"errors", "errors", "directory with the runs behind these files, errors.json and numerics.json"},
       {"changed.toml", "errors", "in the runs behind errors.csv: the set, file or scene with its changed number"},
-      {"plan-check.csv", "plan", "of a planned run: how far it is off a finer model"},
       {"final.csv", "run, import", "the state at the end: the start of another scene by [state]"},
       {"final-memory.csv", "run, import",
        "what friction, links and tethers remember there; it belongs beside `final.csv`"},

@@ -1,6 +1,7 @@
 // A validation case asks one physical question. It has a set-up, an oracle and tolerances, all fixed before the
 // case is run. A case runs the model, compares its numbers with the oracle and returns checks and figures; it never
-// prints and never decides what a miss leads to. Every case is one file of validate/cases/ that registers itself.
+// prints and never decides what a miss leads to. Every case is a folder of validate/cases/: `case.md`, its prose, and
+// `case.cpp`, its oracle and checks, which registers it.
 #pragma once
 
 #include <functional>
@@ -152,7 +153,7 @@ struct Case {
   // The contact law that the case uses: sets without it cannot run it.
   enum class Law { none, line, paper };
 
-  std::string name;  // "euler-buckling", on the command line and of files
+  std::string name;  // "euler-buckling", on the command line and of files; the folder's name
   Group group = Group::theory;
   int order = 0;  // place within the group in lists and reports; equal places go by name
   Tier tier = Tier::quick;
@@ -164,13 +165,14 @@ struct Case {
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;
-  // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas stand between
-  // backquotes in these texts, in notes, in captions and in remarks. report/formula.hpp has their grammar.
+  // From case.md. Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas
+  // stand between backquotes in these texts, in notes and in captions. report/formula.hpp has their grammar.
   std::string title;
   std::string why;         // why it matters in a rope
   std::string setup;       // the specimen and its loads
   std::string oracle;      // what the model is compared with, with the equation
   std::string literature;  // citation with DOI
+  std::vector<std::string> remarks;
   std::function<CaseResult(const CaseContext&)> run;
   // Cases against atoms: their tables of references (see reference.hpp), and about how long LAMMPS takes for those
   // of one tube, s of one core.
@@ -190,7 +192,7 @@ struct Case {
   std::vector<KnownMiss> known_misses;
 };
 
-// Registers a case before main() begins. Write one at the end of a case's file:
+// Registers a case before main() begins. Write one at the end of case.cpp; case.md and the folder's name say the rest:
 //
 //   const RegisteredCase registered([] {
 //     Case c;

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,7 +53,10 @@ class StiffnessMaker {
 // The name of a force term that has no tangent; empty: all have one.
 std::string term_without_tangent(const Simulation& s);
 
-// The same as tangent_of(), with K by blocks, where all terms have a tangent.
+// C: contact viscosity and bond damping, pair by pair. Nothing where a force term or a load has a part in it.
+std::optional<BlockMatrix> damping_blocks(const Simulation& s);
+
+// The same as tangent_of(), with K by blocks, where all terms have a tangent; C by blocks where there are such.
 Tangent tangent_by_blocks(const Simulation& s);
 
 // Forces and torques of the loads, element by element.

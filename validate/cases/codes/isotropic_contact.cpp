@@ -34,7 +34,7 @@ CaseResult run(const CaseContext& context) {
   const Well pair = surface_integral(context.set()).parallel_well();
   const LineLaw line({line_contact_of(model)});
   const double a = model.element_length, compression = 0.05;
-  const BeadLaw bead(pair.distance, pair.energy, a, BeadLaw::uncut);
+  const BeadLaw bead(pair.distance, pair.energy, a);
   const Slide by_line = slide(line, a, pair.distance), by_bead = slide(bead, a, pair.distance);
   const double depth = std::fabs(pair.energy);
 
