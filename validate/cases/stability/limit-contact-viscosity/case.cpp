@@ -5,9 +5,9 @@
 #include <iterator>
 
 #include "cases/common/bundle.hpp"
+#include "cases/common/scene_of_case.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 
 namespace ropewalk::validate::contact_viscosity {
 namespace {
@@ -18,12 +18,8 @@ constexpr double on_table[] = {5000, 200, 20};
 
 // As `run` has it, with the damping of a scene.
 Prepared rope_of(const ParameterSet& set) {
-  Scene scene = scene_of_text(
-      fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = {}\nlength_nm = "
-                  "{}\n[contact]\nprecision = \"double\"\n[run]\nduration_ps = 1\n",
-                  set.path, tubes, elements * set.element_length),
-      "");
-  scene.sets = {set};
+  Scene scene = scene_of_case("limit-contact-viscosity", set,
+                              {{"rope.length_nm", fmt::to_string(elements * set.element_length)}});
   return prepare(scene);
 }
 
@@ -120,20 +116,7 @@ CaseResult run(const CaseContext& context) {
 const RegisteredCase registered([] {
   Case c;
   c.name = "limit-contact-viscosity";
-  c.group = Case::Group::stability;
   c.order = 30;
-  c.title = "Stable steps by contact viscosity";
-  c.why =
-      "Viscosity brings ropes to rest sooner, and costs steps. A run must know how small they have to be "
-      "before it begins.";
-  c.setup =
-      "Seven tubes of four elements at rest with the line law and the bond damping of a scene, random "
-      "velocities of 1e-6 nm/ps and a contact viscosity of 0.2 to 5000 eV ps/nm^2. Bisection finds the step at "
-      "which they blow up within 500 steps.";
-  c.oracle =
-      "The step at which the largest eigenvalue of dt^2 K + 2 dt D is 4, with stiffness K and damping D of the "
-      "whole rope over its masses, from differences of all forces.";
-  c.literature = "L. Verlet, Phys. Rev. 159, 98 (1967), DOI 10.1103/PhysRev.159.98";
   c.run = run;
   c.turns_red = {wrong_stiffnesses(1.2)};
   return c;

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "cases/common/bundle.hpp"
+#include "cases/common/scene_of_case.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "plan/forecast.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 
 namespace ropewalk::validate::twist_shock {
@@ -32,13 +32,12 @@ struct Rope {
 
   Rope(const Load& load, const ParameterSet& set, const ParameterSet& oracle) {
     const double moment = whole_moment(oracle);
-    scene = scene_of_text(
-        fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = {}\nlength_nm = "
-                    "{}\n[twist]\nmoment_nN_nm = {:.17g}\nrate_nN_nm_per_ps = {:.17g}\nhold_ps = {:.17g}\n",
-                    set.path, load.tubes, load.elements * set.element_length, moment / units::nN_nm,
-                    load.rate / units::nN_nm, moment / load.rate),
-        "");
-    scene.sets = {set};
+    scene = scene_of_case("limit-shock", set,
+                          {{"rope.tubes", fmt::to_string(load.tubes)},
+                           {"rope.length_nm", fmt::to_string(load.elements * set.element_length)},
+                           {"twist.moment_nN_nm", fmt::to_string(moment / units::nN_nm)},
+                           {"twist.rate_nN_nm_per_ps", fmt::to_string(load.rate / units::nN_nm)},
+                           {"twist.hold_ps", fmt::to_string(moment / load.rate)}});
     prepared = prepare(scene);
   }
 };
@@ -154,31 +153,13 @@ CaseResult run(const CaseContext& context) {
                   "of the ramp, whatever the moment. Far above 1 it is an upper bound, since the rope cannot "
                   "follow.",
                   low, high));
-  result.remarks.push_back(
-      "Twist runs along the rope as a wave, and its tubes turn about the axis as one: what the runs reach goes as "
-      "1/GJ "
-      "and does not change with EI.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "limit-shock";
-  c.group = Case::Group::stability;
   c.order = 45;
-  c.title = "Ramp rate of a moment, by the length of the rope";
-  c.why =
-      "A rope whose moment rises faster than it can wind is thrown, not twisted. Where its kinetic energy "
-      "comes near the energy of twist, its ends open into brushes, and the end says nothing about the moment.";
-  c.setup =
-      "Ropes of 7 and 19 tubes of 30, 60 and 120 elements, free, under a moment on each tube that shears its "
-      "wall by 0.02. It rises at rates for which the program expects 0.05, 0.2 and 0.7, and is held as long.";
-  c.oracle =
-      "expected_shock(): four times m rho^2 L (L dM/dt/GJ)^2/24 over M^2 L/2GJ of all tubes. Runs of "
-      "seven types of tubes, 0.35 to 1.37 nm in radius, had reached 0.70 to 1.13 of it, which sets the "
-      "tolerance. The rate from which `check` warns, "
-      "by bisection on it, against the formula.";
-  c.literature = "L. D. Landau, E. M. Lifshitz, Theory of Elasticity, 3rd ed. (1986), DOI 10.1016/C2009-0-25521-8";
   c.run = run;
   c.turns_red = {{wrong_GJ(2), {"7 tubes, 41 nm"}}};
   c.stays_green = {wrong_EI(2)};

@@ -7,19 +7,19 @@
 #include <limits>
 
 #include "cases/common/bundle.hpp"
+#include "cases/common/scene_of_case.hpp"
 #include "observe/growth.hpp"
 #include "observe/network.hpp"
 #include "scene/kinds/film.hpp"
 #include "scene/network_words.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 #include "scene/spacing.hpp"
 
 namespace ropewalk::validate::film_percolation {
 namespace {
 
 constexpr double stacked = 6.850923, crossing = 5.6373;  // N l^2 of the literature
-constexpr double relaxing_time = 100;                    // ps
+constexpr double relaxing_time = 100;                    // ps, as in the scene
 
 // Rigid tubes, laid one after another.
 struct Film {
@@ -135,22 +135,13 @@ double crossing_energy(const PairIntegral& integral, const Film& film, double cu
 // With elements of twice the length, which bend as well and take a fourth of the time.
 Relaxed relaxed(const CaseTube& tube, int elements, double box) {
   const double a = 2 * tube.set.element_length, length = elements * a;
-  Scene scene = scene_of_text(
-      fmt::format(R"(format = "ropewalk-scene-1"
-parameters = "{}"
-element_length_nm = {}
-[film]
-tubes = {:.0f}
-length_nm = {}
-width_nm = {}
-depth_nm = {}
-laid = "resting"
-[run]
-duration_ps = {}
-)",
-                  tube.set.path, a, 7.5 * box * box, length, box * length, box * length, relaxing_time),
-      "");
-  scene.sets = {tube.model};
+  const std::string side = fmt::to_string(box * length);
+  Scene scene = scene_of_case("film-percolation", tube.model,
+                              {{"element_length_nm", fmt::to_string(a)},
+                               {"film.tubes", fmt::format("{:.0f}", 7.5 * box * box)},
+                               {"film.length_nm", fmt::to_string(length)},
+                               {"film.width_nm", side},
+                               {"film.depth_nm", side}});
   Prepared p = prepare(scene);
   const double spacing = crossed_spacing(scene), near = touching * spacing;
   const auto& source = dynamic_cast<const FilmSource&>(*scene.source);
@@ -259,49 +250,26 @@ CaseResult run(const CaseContext& context) {
                         "eV",
                         "ends of tubes within reach of others: twice the reach of the contact over the length");
   add_relaxed_figures(films, result);
-  result.remarks = {
-      fmt::format(
-          "Within {:.0f} ps tubes of {:.0f}, {:.0f} and {:.0f} nm keep {:.3g}, {:.3g} and {:.3g} % of their "
-          "contacts and add {:.0f}, {:.0f} and {:.0f} % by van der Waals attraction. The film as laid conducts "
-          "from `N l^2` = {:.2f}, {:.2f} and {:.2f} on, the relaxed one from {:.2f}, {:.2f} and {:.2f}.",
-          relaxing_time, films[0].length, films[1].length, films[2].length, 100 * films[0].kept,
-          100 * films[1].kept, 100 * films[2].kept, 100 * films[0].made / films[0].contacts,
-          100 * films[1].made / films[1].contacts, 100 * films[2].made / films[2].contacts, films[0].before,
-          films[1].before, films[2].before, films[0].after, films[1].after, films[2].after),
-      "Relaxation has not ended then: with no floor and no friction the tubes of a free film go on to gather in "
-      "bundles. Single small films scatter by one in `N l^2`; what relaxation changes is told by the same film "
-      "before "
-      "and after.",
-      fmt::format(
-          "The limit is that of sticks without thickness. Tubes have one, and are caught by ends that would "
-          "pass: those of 66 nm conduct from {:.2f} on, with {:.2g}.",
-          MeanOf(all.front().stacked).value, MeanOf(all.front().stacked).error),
-      "N counts tubes whose middle is more than half a length away from the sides of the box, of 11 lengths, and a "
-      "cluster spans that part."};
+  result.remarks.push_back(fmt::format(
+      "Within {:.0f} ps tubes of {:.0f}, {:.0f} and {:.0f} nm keep {:.3g}, {:.3g} and {:.3g} % of their "
+      "contacts and add {:.0f}, {:.0f} and {:.0f} % by van der Waals attraction. The film as laid conducts "
+      "from `N l^2` = {:.2f}, {:.2f} and {:.2f} on, the relaxed one from {:.2f}, {:.2f} and {:.2f}.",
+      relaxing_time, films[0].length, films[1].length, films[2].length, 100 * films[0].kept, 100 * films[1].kept,
+      100 * films[2].kept, 100 * films[0].made / films[0].contacts, 100 * films[1].made / films[1].contacts,
+      100 * films[2].made / films[2].contacts, films[0].before, films[1].before, films[2].before, films[0].after,
+      films[1].after, films[2].after));
+  result.remarks.push_back(fmt::format(
+      "The limit is that of sticks without thickness. Tubes have one, and are caught by ends that would "
+      "pass: those of 66 nm conduct from {:.2f} on, with {:.2g}.",
+      MeanOf(all.front().stacked).value, MeanOf(all.front().stacked).error));
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "film-percolation";
-  c.group = Case::Group::theory;
   c.order = 195;
   c.tier = Case::Tier::full;
-  c.title = "Where a film of tubes laid on one another begins to conduct";
-  c.why =
-      "A film conducts once tubes that touch reach from side to side. Lines on a plane all touch where they cross; "
-      "stiff tubes touch only where they rest.";
-  c.setup =
-      "Rigid tubes of 1, 2 and 4 µm with the contact distance of {tube}, laid at random one after another. Each "
-      "rests on the two supports that hold it on either side of its middle. 40 films of each length, and 20 of "
-      "each of "
-      "two shorter lengths. Films of shorter {tube} tubes are then left to the forces of the model, with damping.";
-  c.oracle =
-      "`N l^2 = 6.850923` for sticks laid on one another, `5.6373` for lines in a plane; `E(h)/sin gamma` for each "
-      "crossing of the film as laid, with the surface integral.";
-  c.literature =
-      "R. K. Daniels, arXiv:2603.05374 (2026); S. Mertens, C. Moore, Phys. Rev. E 86, 061109 (2012), DOI "
-      "10.1103/PhysRevE.86.061109";
   c.run = run;
   c.turns_red = {{wrong_contact(1.1), {"van der Waals"}}};
   return c;

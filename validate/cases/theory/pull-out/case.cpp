@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cases/common/scene_of_case.hpp"
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 
 namespace ropewalk::validate::pull_out {
 namespace {
@@ -24,13 +24,10 @@ Drawn drawn(const ParameterSet& set, int tube, int by) {
   std::string others;
   for (int t = 0; t < 7; ++t)
     if (t != tube) others += (others.empty() ? "" : ", ") + std::to_string(t);
-  Scene scene = scene_of_text(
-      fmt::format(
-          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = 7\nlength_nm = {}\n[[grip]]\nend = "
-          "\"lower\"\ntubes = [{}]\n[[grip]]\nend = \"upper\"\ntubes = [{}]\n[run]\nmode = \"relax\"\n",
-          set.path, elements * set.element_length, others, tube),
-      "");
-  scene.sets = {set};
+  Scene scene = scene_of_case("pull-out", set,
+                              {{"rope.length_nm", fmt::to_string(elements * set.element_length)},
+                               {"grip.0.tubes", "[" + others + "]"},
+                               {"grip.1.tubes", fmt::format("[{}]", tube)}});
   Prepared p = prepare(scene);
   for (int e = p.topology.tube_begin[tube]; e < p.topology.tube_begin[tube + 1]; ++e)
     p.state.position.z[static_cast<std::size_t>(e)] += by * set.element_length;
@@ -74,31 +71,16 @@ CaseResult run(const CaseContext& context) {
                                 [&](double way) { return 6 * per_contact * (way - from); }),
                    model_points(tube.name, ways, energies)});
   }
-  result.remarks.push_back(
-      "The force does not depend on the overlap: smooth tubes bear no shear, and only the ends that part from each "
-      "other count. Measured values of bundles of double-walled tubes, 1.7 ± 1.0 nN per contact, are five times "
-      "the bare "
-      "mechanics (Filleter et al., Nano Letters 12, 732 (2012)): what holds real tubes is not in this model.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "pull-out";
-  c.group = Case::Group::theory;
   c.order = 170;
   c.tier = Case::Tier::full;
   c.law = Case::Law::none;
   c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
-  c.title = "A tube drawn out of a rope of seven";
-  c.why = "Load goes from tube to tube by this force alone where nothing binds them.";
-  c.setup =
-      "Seven tubes of {tube}, 24 elements each. The centre tube or an outer one is held at its upper end, the "
-      "others at their lower ends, drawn out by three and by nine elements, and brought to rest.";
-  c.oracle =
-      "The energy per length with which two tubes side by side bind, for each contact: six of the centre tube, "
-      "three of an outer one.";
-  c.literature = "T. Filleter et al., Nano Lett. 12, 732 (2012), DOI 10.1021/nl203686d";
   c.run = run;
   c.turns_red = {wrong_contact(1.1)};
   return c;

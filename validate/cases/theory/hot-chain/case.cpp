@@ -4,27 +4,19 @@
 #include <cmath>
 
 #include "cases/common/chain.hpp"
+#include "cases/common/scene_of_case.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 
 namespace ropewalk::validate::hot_chain {
 namespace {
 
 constexpr double kelvin = 300;
 constexpr int elements = 60;
-constexpr double begin = 300, duration = 6000, every = 2;  // ps
+constexpr double begin = 300, duration = 6000, every = 2;  // ps; the scene lasts for both
 
 CaseResult run(const CaseContext& context) {
   const CaseTube tube = context.tube();
-  Scene scene = scene_of_text(
-      fmt::format(
-          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[chain]\nelements = {}\n[contact]\nlaw = \"none\"\n"
-          "[bond]\nlaw = \"harmonic\"\n[start]\ntemperature_K = {}\n[thermostat]\ntemperature_K = {}\n"
-          "coupling_per_ps = 0.5\n[damping]\ncontact_viscosity_eV_ps_per_nm2 = 0\nbond_damping_per_ps = 0\n[run]\n"
-          "duration_ps = {}\n",
-          tube.set.path, elements, kelvin, kelvin, begin + duration),
-      "");
-  scene.sets = {tube.model};
+  Scene scene = scene_of_case("hot-chain", tube.model, {});
   const Prepared p = prepare(scene);
   Simulation s = start(scene, p);
   s.steps(std::lround(begin / p.time_step));
@@ -70,27 +62,15 @@ CaseResult run(const CaseContext& context) {
                 "The mean over the run of each bond.",
                 {theory_curve("kT/2 in either plane", a, a * bonds, [](double) { return 1.0; }),
                  model_points("bonds", position, bent)});
-  result.remarks.push_back(
-      "No experiment has a free tube of this length in a vacuum at rest: the case tests the statistics of the "
-      "model, which "
-      "ropes in heat rely on.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "hot-chain";
-  c.group = Case::Group::theory;
   c.order = 190;
   c.tier = Case::Tier::full;
   c.law = Case::Law::none;
-  c.title = "A free tube in heat";
-  c.why = "Ropes are twisted at room temperature, not at zero.";
-  c.setup =
-      "A free tube of {tube} of 60 elements with harmonic bonds in a Langevin bath of 300 K, sampled every 2 ps "
-      "for 6 ns.";
-  c.oracle = "`kT/2` for every quadratic term of the energy; persistence length `EI/kT`.";
-  c.literature = "L. D. Landau, E. M. Lifshitz, Statistical Physics, 3rd ed. (1980), sections 44 and 127";
   c.run = run;
   c.turns_red = {{wrong_stiffnesses(1.1), {"persistence length", "torsion", "stretching"}}};
   return c;

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "cases/common/scene_of_case.hpp"
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
 #include "observe/growth.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
 
 namespace ropewalk::validate::loop_loss {
 namespace {
@@ -25,25 +25,12 @@ struct Loop {
 Loop turned_and_back(const ParameterSet& set, double rate) {
   const double length = elements * set.element_length, turn = twist * length;
   const double there = turn / rate, hold = 60;
-  Scene scene = scene_of_text(fmt::format(R"(format = "ropewalk-scene-1"
-parameters = "{}"
-[rope]
-tubes = 7
-length_nm = {}
-[contact]
-precision = "double"
-[[grip]]
-end = "lower"
-tilt_free = true
-[[grip]]
-end = "upper"
-tilt_free = true
-about_z = {{ rotation_deg = [[0, 0], [{}, {}], [{}, 0], [{}, 0]] }}
-smooth_ps = {}
-)",
-                                          set.path, length, there, turn, 2 * there, 2 * there + hold, 0.25 * there),
-                              "");
-  scene.sets = {set};
+  Scene scene = scene_of_case(
+      "loop-loss", set,
+      {{"rope.length_nm", fmt::to_string(length)},
+       {"grip.1.about_z.rotation_deg",
+        fmt::format("[[0, 0], [{}, {}], [{}, 0], [{}, 0]]", there, turn, 2 * there, 2 * there + hold)},
+       {"grip.1.smooth_ps", fmt::to_string(0.25 * there)}});
   const Prepared p = prepare(scene);
   Simulation s = start(scene, p);
   const double first = s.total_energy();
@@ -91,28 +78,15 @@ CaseResult run(const CaseContext& context) {
                 "Seven tubes turned and turned back between clamps at fixed length.",
                 {theory_curve("proportional", rates.back(), rates.front(), [&](double x) { return level + x; }),
                  model_points("loops", rates, losses)});
-  result.remarks.push_back(
-      "The only friction of the model is viscous. A real rope may lose energy at any rate, where tubes slip with "
-      "static friction.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "loop-loss";
-  c.group = Case::Group::theory;
   c.order = 180;
   c.tier = Case::Tier::full;
   c.law = Case::Law::none;
-  c.title = "What a rope loses when it is turned and turned back";
-  c.why =
-      "Experiments get 90 % and more of the energy back. A loss that stays at slow rates would be the model's "
-      "error.";
-  c.setup =
-      "Seven tubes of {tube}, 20 elements each, between clamps at fixed length, in which they tilt. One turns by "
-      "1.2 degrees per nm and back at 1.5 to 0.015 degrees per ps, and then rests.";
-  c.oracle = "With viscous friction alone the loss is proportional to the rate.";
-  c.literature = "L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed. (1976), section 25";
   c.run = run;
   c.turns_red = {{wrong_GJ(1.1), {"put in"}}};
   return c;
