@@ -1,7 +1,7 @@
 // A validation case asks one physical question. It has a set-up, an oracle and tolerances, all fixed before the
 // case is run. A case runs the model, compares its numbers with the oracle and returns checks and figures; it never
-// prints and never decides what a miss leads to. Every case is a folder of validate/cases/: `case.md`, its prose, and
-// `case.cpp`, its oracle and checks, which registers it.
+// prints and never decides what a miss leads to. Every case is a folder of validate/cases/: `case.md`, its prose,
+// `scene.toml` where its specimen is a scene, and `case.cpp`, its oracle and checks, which registers it.
 #pragma once
 
 #include <functional>
