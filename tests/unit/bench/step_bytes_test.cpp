@@ -1,8 +1,7 @@
-#include "bench/machine_peak.hpp"
+#include "bench/step_bytes.hpp"
 
 #include <gtest/gtest.h>
 
-#include "bench/step_bytes.hpp"
 #include "sim/contact/line/list.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "unit/support.hpp"
@@ -10,31 +9,6 @@
 namespace ropewalk {
 namespace {
 namespace UNIT {
-
-// Each chain tends to 0.25 / (1 - 0.5), and the sum of all is left.
-template <class T>
-void expect_work() {
-  T out[64 / sizeof(T)] = {};
-  const std::size_t once = multiply_adds(100, T{0.5}, out);
-  EXPECT_EQ(out[0], T{6});
-  EXPECT_EQ(once % (100 * 12 * 2), 0u);
-  EXPECT_EQ(multiply_adds(200, T{0.5}, out), 2 * once);
-}
-
-TEST(MachinePeak, LoopsDoWhatTheyCount) {
-  expect_work<float>();
-  expect_work<double>();
-  alignas(64) double a[16], b[16], c[16];
-  for (int k = 0; k < 16; ++k) b[k] = k, c[k] = 2 * k;
-  triad(a, b, c, 16);
-  for (int k = 0; k < 16; ++k) EXPECT_EQ(a[k], 7 * k);
-}
-
-TEST(MachinePeak, IsFound) {
-  const MachinePeak peak = machine_peak(1, false);
-  EXPECT_GT(peak.arithmetic, 0);
-  EXPECT_GT(peak.transfer, 0);
-}
 
 // Without contact the state alone, read and written; with it the axes and the list besides.
 TEST(StepBytes, AreOfTheStateAndOfWhatIsListed) {
