@@ -33,7 +33,7 @@ constexpr double fresh_tolerance = 0.01;  // of the range of each column: what t
 constexpr double pair_fresh_tolerance = 0.001;
 
 constexpr int tubes = 7, contacts = 12;
-constexpr int turns = 4, shifts = 24, periods = 5;  // of the pair that measures the corrugation
+constexpr int turns = 4, shifts = 24, periods = 5;  // grid of the pair that measures the corrugation
 
 constexpr double force_tolerance = 5e-3;  // eV/nm
 constexpr long max_steps = 200000;
@@ -44,7 +44,7 @@ struct Grips {
   bool glued = false;
   double step = 0;  // rad
   int increments = 0;
-  int held = 0;  // of these, compared with the atoms
+  int held = 0;  // number of these that are compared with the atoms
 };
 // Glued: the tubes farthest from the neutral plane are strained by x theta/L, up to 2 % in the increments that are
 // compared. The stiffness of a tube changes by 4.5 % per percent, with opposite signs on the two sides. Free: up to
@@ -82,7 +82,7 @@ constexpr int first_iterations = 2500, iterations = 1000;
 // Displacement of each atom from the increment before, along x and z.
 std::string placement_text(const Grips& grips, const ParameterSet& set, double length) {
   std::string text = "variable i equal 0\n";
-  std::string offset;  // of each atom's tube from the axis
+  std::string offset;  // offset of each atom's tube from the axis
   int type = 0;
   for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
     ++type;

@@ -18,7 +18,7 @@ namespace {
 
 // Fixed beforehand.
 constexpr double gap_tolerance = 0.002;    // nm
-constexpr double energy_tolerance = 0.02;  // of the depth
+constexpr double energy_tolerance = 0.02;  // relative to the depth
 constexpr int turn_count = 12;
 constexpr double tube_length = 2.5;  // nm, beyond which no atom reaches the other tube
 constexpr double fit_reach = 0.03;   // nm about the minimum

@@ -125,7 +125,7 @@ std::vector<Crossing> crossings(const ReferenceTable& data) {
   return list;
 }
 
-constexpr std::size_t at_rest = 2;  // of the offsets
+constexpr std::size_t at_rest = 2;  // index of the offset at rest
 
 void add_checks(const Crossing& c, const CrossedRows& rows, CaseResult& result) {
   const double angle = c.angle * units::degree, distance = c.distance[at_rest];

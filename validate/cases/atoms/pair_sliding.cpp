@@ -17,7 +17,7 @@ namespace {
 
 // Fixed beforehand.
 constexpr double energy_tolerance = 0.03;       // registry
-constexpr double smoothness_tolerance = 0.001;  // of the well: far below the corrugation of atoms
+constexpr double smoothness_tolerance = 0.001;  // relative to the well; far below the corrugation of atoms
 constexpr int turns = 4, shifts = 24;
 constexpr double cell = 1.2;           // nm, least length
 constexpr double longest_slide = 0.5;  // nm: the period of chiral tubes is longer

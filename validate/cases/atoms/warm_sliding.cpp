@@ -29,7 +29,8 @@ using calibrate::Measured;
 // here.
 constexpr double binding_tolerance = 0.07;
 constexpr double sigmas = 3;
-// Of the range of a column, stored against fresh. Rounding on another machine leads atoms to another trajectory.
+// Relative to the range of a column, stored against fresh. Rounding on another machine leads atoms to another
+// trajectory.
 constexpr double fresh_tolerance = 0.5;
 
 constexpr double temperature = 300, warming = 5, settling = 1;  // K, ps
