@@ -91,7 +91,7 @@ PulledCell pull_cell(RunContext& run, const RelaxedTube& tube) {
                length = static_cast<double>(hexagons) * tube.shape.length_per_hexagon;
   TubeShape shape = tube.shape;
   shape.twist = angle / length;
-  write_data(run, "pull.data", data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, length));
+  write_data(run, "pull.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length));
   const std::string relaxed =
       "minimize 0.0 1e-5 1000 10000\n"
       "print \"$(pe:%.15g)\" append pull.dat screen no\n"
@@ -150,6 +150,7 @@ PulledCell pull_cell(RunContext& run, const RelaxedTube& tube) {
 Pull PullFit::law() const {
   Pull out;
   out.end = end;
+  out.edge_force = edge_force;
   for (std::size_t k = 0; k < force.size(); ++k) out.force[k] = force[k].value;
   return out;
 }
@@ -163,7 +164,8 @@ PullFit fit_pull(std::vector<AtomisticRow>& table, const Anharmonic& law, double
   if (rows.size() < stencil + 1 || rows.back().strain < law.max_strain + least) return {};
   const double twist = rows.front().twist - natural_twist;
   PullFit out;
-  out.end = rows.back().strain;
+  out.start = law.max_strain, out.end = rows.back().strain;
+  out.edge_force = edge_of_window(law, EA).force;
   for (std::size_t k = 0; k < out.force.size(); ++k) {
     const double strain = law.max_strain + (out.end - law.max_strain) * static_cast<double>(k) / PULL_STEPS;
     out.force[k] = force_at(rows, strain);

@@ -99,7 +99,8 @@ struct AnharmonicFit {
 
 // The force of a tube that is pulled, at equal steps of strain from the edge of the window to the end.
 struct PullFit {
-  double end = 0;                                // strain; 0: not measured
+  double start = 0, end = 0;                     // strains: max_strain of the window, and the last one; 0: not measured
+  double edge_force = 0;                         // eV/nm, of the bond at `start`
   std::array<Measured, PULL_STEPS + 1> force{};  // eV/nm, of the atoms, without twist
   std::string ended_by;                          // "the force falls"
   double error = 0;                              // largest relative error of the law against energies of the pull
@@ -119,6 +120,7 @@ struct Stiffness {
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
+  double sublattice_turn = 0, sublattice_rise = 0;  // rad and nm, of the second one in the relaxed tube
   double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
   Measured stretch_cubic;  // eV/nm, of e^3

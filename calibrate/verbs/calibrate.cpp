@@ -252,8 +252,9 @@ AtomLaw parse_atom_law(const std::string& lj, double cutoff) {
   if (!(cutoff >= 0))
     throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff), "must be positive, or 0 for none");
   if (law.cutoff < 2 * law.sigma)
-    throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff),
-                     fmt::format("must be at least 2 sigma, {:.3g} nm: the attraction is lost", 2 * law.sigma));
+    throw InputError(
+        {"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff),
+        fmt::format("must be at least 2 sigma, {:.3g} nm: a shorter cutoff loses the attraction", 2 * law.sigma));
   return law;
 }
 

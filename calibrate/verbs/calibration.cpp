@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "atomistic/runs.hpp"
 #include "atoms/lattice.hpp"
@@ -179,6 +180,8 @@ void add_atomistic(const Calibration& c, Quantities& q) {
   q.calibrated("coupling", scaled(s.coupling, units::eV_in_nN_nm), "nN nm", "of stretch and twist");
   q.calibrated("poisson", s.poisson, "1", "-d ln r / d strain");
   q.calibrated("energy_per_atom", {s.energy_per_atom, 0}, "eV", "of the relaxed tube");
+  q.calibrated("sublattice_turn", {s.sublattice_turn, 0}, "rad", "of the second sublattice against the first");
+  q.calibrated("sublattice_rise", {s.sublattice_rise, 0}, "nm", "likewise");
 }
 
 void add_validity(const Calibration& c, Quantities& q) {
@@ -394,7 +397,10 @@ void put_pull(ParameterSet& set, const PullFit& pull) {
             all.end());
   auto at = all.end();
   while (at != all.begin() && !begins(*(at - 1), "bond.anharmonic.")) --at;
-  all.insert(at, {"bond.pull.end", pull.end, "1", 0.5 * pull_step, "calibrated", "", note});
+  const Quantity added[] = {{"bond.pull.end", pull.end, "1", 0.5 * pull_step, "calibrated", "", note},
+                            start_quantity("bond.pull.start", pull.start, "1"),
+                            start_quantity("bond.pull.edge_force", pull.edge_force * units::eV_in_nN_nm, "nN")};
+  all.insert(at, std::begin(added), std::end(added));
   set.pull = pull.law();
   for (std::size_t k = 0; k < pull.force.size(); ++k) set.pull_errors[k] = pull.force[k].standard_error;
 }

@@ -292,14 +292,6 @@ void renew_shear(const Settings& s, ParameterSet& set) {
     }
 }
 
-// The forces of the pull go on from that of EA.
-void renew_pull(const Settings& s, ParameterSet& set) {
-  if (!set.pull) return;
-  const double factor = find_quantity(set, "bond.EA")->value / find_quantity(*s.base, "bond.EA")->value;
-  for (double& force : set.pull->force) force *= factor;
-  for (double& error : set.pull_errors) error *= factor;
-}
-
 // The groups of the base that name a fitted number are replaced by one of this fit.
 void renew_correlations(const Settings& s, const FitModel& m, const FitResult& fit, ParameterSet& set) {
   Correlation fitted;
@@ -346,7 +338,7 @@ std::string new_set(const Settings& s, const FitModel& m, const FitResult& fit, 
         q.note = fmt::format("fitted to {}; fit error {:.1e} of the well", fs::path(a.data).filename().string(),
                              fit.largest);
   }
-  if (s.model == "stiffness") renew_shear(s, set), renew_pull(s, set);
+  if (s.model == "stiffness") renew_shear(s, set);
   renew_correlations(s, m, fit, set);
   set.name = fs::path(a.out).stem().string();
   set.provenance.emplace_back("fit_command", a.command);

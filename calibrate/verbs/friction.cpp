@@ -35,11 +35,8 @@ struct Tube {
   // About as long (nm), its middle at z = 0.
   std::vector<Vector3> atoms(double length) const {
     const long hexagons = hexagons_in(set.chirality, shape, length);
-    std::vector<Vector3> out;
-    for (const Site& site : strip_sites(set.chirality, hexagons))
-      out.push_back(place(set.chirality, site, shape) -
-                    Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
-    return out;
+    return tube_atoms(set.chirality, shape, hexagons, 0,
+                      -0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon);
   }
 };
 

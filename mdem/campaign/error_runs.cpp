@@ -83,9 +83,6 @@ class InputsOf {
       std::vector<std::string> paths;
       for (const std::string& key : keys)
         if (find_quantity(set, key)) paths.push_back(key + ".value");
-      // The force of the pull goes on from that of EA.
-      for (std::size_t row = 0; name == "EA" && set.pull && row < set.pull->force.size(); ++row)
-        paths.push_back(fmt::format("bond.pull.force.values.{}", row));
       add(name + of, folder + name, sigma, step_of(sigma), correlated, Of::set, k, paths);
     };
     std::string none;
@@ -164,6 +161,7 @@ class InputsOf {
 
 // Of the text of a file with its values changed. They are read as they stand there, so that no digit is lost.
 std::string changed_text(std::string text, const VariedNumber& source, bool plus) {
+  if (source.of == InputNumber::Of::set) text = with_start_of_pull(text, source.error.name);
   const double step = (plus ? 1 : -1) * source.error.step;
   const auto change = [&](const std::string& path, const auto& changed) {
     text = with_value(text, path, fmt::format("{:.17g}", changed(number_at(text, path, source.error.name))),

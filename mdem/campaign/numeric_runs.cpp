@@ -89,13 +89,12 @@ class Planning {
          fmt::format("element_length_nm = {:.3g}", half_error * length)});
     if (splitting_of(scene_) == Splitting::between)
       plan_.what.remarks.push_back(
-          "Shorter elements: what is held stays in its place, and behind it tubes end a quarter of an element "
-          "earlier, "
-          "which counts in energies of the whole");
+          "Shorter elements: clamps stay in their places, and the tubes end a quarter of an element nearer to "
+          "them. Energies of the whole rope contain this difference");
     if (is_warm(scene_))
       plan_.what.remarks.push_back(
-          "Shorter elements: a warm scene has more heat with more of them, and its energies are not those of one "
-          "scene");
+          "Shorter elements: a warm scene then has more elements and so more heat, and its energies cannot be "
+          "compared");
   }
 
   std::string without_frames(const std::string& text) const {
@@ -117,6 +116,10 @@ class Planning {
     plan_.what.sources.push_back({"time step", "half-step", second_order, 1,
                                   fmt::format("steps of {:.4g} fs in the place of {:.4g} fs", 0.5 * step, step),
                                   fmt::format("run.time_step_fs = {:.3g}", half_error * step)});
+    if (scene_.bath())
+      plan_.what.remarks.push_back(
+          "A bath: the velocities at the end of a step are too cold, which counts in kinetic_eV as an error of the time "
+          "step; places and energies of bonds are not concerned");
   }
 
   void rate() {

@@ -241,8 +241,8 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
     const Series foreseen = by_theory(some, &PhasePoint::kinetic_theory);
     html += heading(escape_markup(name)) + "<figure>" + svg +
             figures.caption(escape_markup(fmt::format(
-                "Every run by the shape that the rope took, filled where it passed; and the thresholds. By "
-                "bisection it {}{}.",
+                "Each mark is a run: its form is the shape that the rope took, and it is filled where the run "
+                "passed. Lines are thresholds. By bisection the threshold {}{}.",
                 law_words(by_bisection(some)),
                 has_values(foreseen) ? "; by theory it " + law_words(foreseen) : std::string()))) +
             "</figure>\n";

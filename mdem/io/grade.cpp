@@ -186,9 +186,9 @@ void grade_anharmonic(const ParameterSet& set, Grade& grade) {
     ranges.push_back({"the loss of EI at linear_curvature, by b4,",
                       -4 * h.b4 * std::pow(r, 4) * q->value * q->value / set.bond.bend, 0.005, 0.02});
   if (set.pull) {
-    const double e = h.max_strain, edge = EA * e + e * e * (3 * h.e3 + 4 * h.e4 * e);
-    ranges.push_back(
-        {"the first force of the pull over that of e3 and e4", set.pull->force.front() / edge, 0.97, 1.03});
+    const double then = set.pull->edge_force;
+    ranges.push_back({"the first force of the pull over edge_force", set.pull->force.front() / then, 0.97, 1.03});
+    ranges.push_back({"the force at max_strain over edge_force", edge_of_window(h, EA).force / then, 0.9, 1.1});
   }
   within(ranges, grade);
 }

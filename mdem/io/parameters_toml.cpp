@@ -14,6 +14,11 @@
 #include "io/toml_table.hpp"
 
 namespace ropewalk {
+
+Quantity start_quantity(const std::string& key, double value, const char* unit) {
+  return {key, value, unit, 0.0, "derived", "", "of the bond when the pull was made"};
+}
+
 namespace {
 
 constexpr const char* not_published = "not published";
@@ -128,6 +133,13 @@ class Reader {
     read_pull(t.table("pull"));
   }
 
+  // Where a pull begins. A set from before this was written has it by its terms.
+  double start_of_pull(const TomlTable& t, const char* key, double now, const char* unit) {
+    if (t.has(key)) return quantity(t, key, unit, Bounds::positive(1e9));
+    order_.emplace_back(t.line("end"), start_quantity(std::string("bond.pull.") + key, now, unit));
+    return now;
+  }
+
   void read_pull(const TomlTable& t) {
     Anharmonic& h = *set_.anharmonic;
     Pull pull;
@@ -139,12 +151,17 @@ class Reader {
     for (auto* row : {&pull.force, &set_.pull_errors})
       for (double& force : *row) force *= units::nN_nm;
     const EdgeOfWindow edge = edge_of_window(h, set_.bond.stretch);
-    if (!(std::fabs(pull.force[0] / edge.force - 1) < 0.1))
+    const double start = start_of_pull(t, "start", h.max_strain, "1");
+    if (std::fabs(start - h.max_strain) > 1e-9)
+      throw t.error("start", fmt::format("is {}, not max_strain = {}", start, h.max_strain),
+                    "leave max_strain as it was, or make the pull anew: ropewalk calibrate pull");
+    pull.edge_force = units::nN_nm * start_of_pull(t, "edge_force", edge.force * units::eV_in_nN_nm, "nN");
+    if (!(std::fabs(pull.force[0] / pull.edge_force - 1) < 0.1))
       throw t.error("force", fmt::format("begins with {:.4g} nN", pull.force[0] * units::eV_in_nN_nm),
-                    fmt::format("the terms of [bond.anharmonic] end with {:.4g} nN: calibrate the set anew",
-                                edge.force * units::eV_in_nN_nm));
-    std::array<double, PULL_STEPS + 1> force = pull.force;
-    force[0] = edge.force;
+                    fmt::format("{} {:.4g} nN: calibrate the set anew",
+                                t.has("edge_force") ? "edge_force is" : "the terms of [bond.anharmonic] end with",
+                                pull.edge_force * units::eV_in_nN_nm));
+    const std::array<double, PULL_STEPS + 1> force = forces_of(pull, h, set_.bond.stretch);
     const double first = force[1] - force[0], step = (pull.end - h.max_strain) / PULL_STEPS;
     for (std::size_t k = 0; k < PULL_STEPS; ++k)
       if (!(force[k + 1] > force[k]))
@@ -294,6 +311,8 @@ class Reader {
     if (set_.anharmonic) set_.anharmonic->coupling = coupling;
     quantity(t, "poisson", "1", Bounds::range(-1, 1));
     quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
+    if (t.has("sublattice_turn")) quantity(t, "sublattice_turn", "rad", Bounds::range(-1, 1));
+    if (t.has("sublattice_rise")) quantity(t, "sublattice_rise", "nm", Bounds::range(-0.1, 0.1));
   }
 
   void read_validity(const TomlTable& t) {
@@ -355,6 +374,22 @@ ParameterSet read_parameters(const std::string& path) {
 
 ParameterSet parameters_of_text(const std::string& text, const std::string& path) {
   return Reader(text, path).read();
+}
+
+std::string with_start_of_pull(const std::string& text, const std::string& path) {
+  const TomlTable bond = TomlTable::parse(text, path).table("bond");
+  if (!bond.has("pull")) return text;
+  const TomlTable pull = bond.table("pull");
+  const ParameterSet set = parameters_of_text(text, path);
+  std::string missing;
+  for (const char* key : {"start", "edge_force"})
+    if (!pull.has(key)) missing += quantity_text(*find_quantity(set, std::string("bond.pull.") + key), key);
+  if (missing.empty()) return text;
+  std::size_t at = 0;
+  for (int line = pull.line("force"); line > 1; --line) at = text.find('\n', at) + 1;
+  // Where the table is not written as one, all of the set is written anew.
+  if (text.compare(at, 5, "force") != 0) return parameters_text(set, "");
+  return text.substr(0, at) + missing + text.substr(at);
 }
 
 std::vector<std::vector<double>> covariance(const ParameterSet& set, const std::vector<std::string>& keys) {

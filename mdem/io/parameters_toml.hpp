@@ -13,6 +13,12 @@ ParameterSet read_parameters(const std::string& path);
 // The same from the text of such a file; errors name `path`.
 ParameterSet parameters_of_text(const std::string& text, const std::string& path);
 
+// The text of a set with what an older one leaves out of [bond.pull]: another EA then scales its forces. To be taken
+// before numbers of the text are changed.
+std::string with_start_of_pull(const std::string& text, const std::string& path);
+// A number of it, as files have it.
+Quantity start_quantity(const std::string& key, double value, const char* unit);
+
 // Null if the set has no such number.
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
 // Covariance of these quantities, in their units: of their standard errors and correlations. A quantity that the

@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "model/forms.hpp"
 
@@ -82,13 +83,23 @@ inline EdgeOfWindow edge_of_window(const Anharmonic& h, double EA) {
 struct Pull {
   double end = 0;
   std::array<double, PULL_STEPS + 1> force{};
+  double edge_force = 0;  // at the edge of the window when the pull was made; 0: as it is
 };
-// The first force is taken from the window.
+// The forces that a bond has: the first is that of the window. All others are scaled as the edge of the window has
+// been since the pull was made, so that a tube with another EA keeps the shape of its pull.
+inline std::array<double, PULL_STEPS + 1> forces_of(const Pull& pull, const Anharmonic& h, double EA) {
+  const double edge = edge_of_window(h, EA).force;
+  double scale = pull.edge_force > 0 ? edge / pull.edge_force : 1;
+  if (std::fabs(scale - 1) < 1e-12) scale = 1;  // rounding of the file
+  std::array<double, PULL_STEPS + 1> out = pull.force;
+  for (double& force : out) force *= scale;
+  out[0] = edge;
+  return out;
+}
 inline void set_pull(Anharmonic& h, double EA, const Pull& pull) {
   const double step = h.pull_step = (pull.end - h.max_strain) / PULL_STEPS;
   const EdgeOfWindow edge = edge_of_window(h, EA);
-  std::array<double, PULL_STEPS + 1> force = pull.force, slope{};
-  force[0] = edge.force;
+  std::array<double, PULL_STEPS + 1> force = forces_of(pull, h, EA), slope{};
   const auto secant = [&](int k) { return (force[k + 1] - force[k]) / step; };
   slope[0] = edge.slope;
   for (int k = 1; k < PULL_STEPS; ++k) {

@@ -10,7 +10,9 @@
 //   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers]
 //   }
 //               (nN), of a tube that is pulled and not twisted, at equal steps of strain from max_strain to end;
-//               end: largest strain that the atoms bear and that their potential describes
+//               end: largest strain that the atoms bear and that their potential describes; optional: start, the
+//               max_strain, and edge_force (nN), the force of EA and [bond.anharmonic] there, both of the time when
+//               the pull was made. Where they are missing they are what the set has now.
 //   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
 //               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
 //   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
@@ -20,7 +22,8 @@
 //               registries of two real tubes, over its mean
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad)
+//               and sublattice_rise (nm): how far the second sublattice has moved against the first
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
 //               off
@@ -111,7 +114,7 @@ struct ParameterSet {
   std::optional<PaperContact> paper;
   std::optional<LineParameters> line;
   Validity validity;
-  std::vector<Quantity> quantities;  // every number of the file, in its order
+  std::vector<Quantity> quantities;  // every number of the file, in its order, and what it leaves out of the pull
   std::vector<Correlation> correlations;
   std::vector<std::pair<std::string, std::string>> provenance;
   std::string path;  // where it was read from

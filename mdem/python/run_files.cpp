@@ -47,6 +47,8 @@ void bind_run_files(py::module_& m) {
     const ParameterSet set = read_parameters(path);
     return py::make_tuple(path, set.name, grade_of(set).words());
   });
+  // The text of a set, of which numbers may be changed.
+  m.def("set_to_change", [](const std::string& path) { return with_start_of_pull(read_file(path), path); });
   // What came of a run: the columns that tables of runs have, and whether it is beyond a limit, in words.
   m.def("run_results", [](const std::string& directory) {
     const RunDirectory run{directory};

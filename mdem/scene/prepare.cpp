@@ -226,12 +226,16 @@ void refuse_cooling(const Scene& scene, const Prepared& p) {
 
 std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
-  if (is_warm(scene))
-    out.push_back(
-        fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % hotter "
-                    "than velocities.",
-                    100 * excess_of_positions(p.limit, p.time_step)));
   const ThermostatOptions* bath = scene.bath();
+  const double excess = excess_of_positions(p.limit, p.time_step);
+  if (is_warm(scene))
+    out.push_back(bath ? fmt::format("The time step makes the velocities at its end, and so kinetic_eV, up to {:.2g} % "
+                                     "colder than the bath. Positions, and so the energies of the bonds, have its "
+                                     "temperature.",
+                                     100 * (1 - 1 / (1 + excess)))
+                       : fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % "
+                                     "hotter than velocities.",
+                                     100 * excess));
   if (bath ? !is_warm(scene) : scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0)
     return out;
   const Cooling cooling(scene, p);

@@ -87,30 +87,51 @@ TEST(Langevin, EveryKindOfMotionHoldsHalfAkT) {
   EXPECT_NEAR(per_term(turns, 3 * elements), 1, 0.02);
 }
 
+// What the kinetic energy at the end of a step lacks: the mean of those before and after the whole kick of a step, each
+// of which has the temperature of the bath, is larger by the square of half a kick.
+double missing_kinetic(const Simulation& s, double step) {
+  const TubeType& type = s.topology().types[0];
+  double sum = 0;
+  for (std::size_t i = 0; i < s.state().size(); ++i)
+    sum += s.forces().force[i].squaredNorm() / type.mass + s.forces().torque[i].squaredNorm() / type.inertia;
+  return step * step / 8 * sum;
+}
+
 // 300 runs of a chain, each with an error of its own mean by blocks: the true mean, by equipartition, lies within
-// one error in 68.3 % of them, within two binomial standard errors, 5.4 %.
+// one error in 68.3 % of them, within two binomial standard errors, 5.4 %. That of the kinetic energy with what the
+// end of a step lacks of it.
 TEST(LangevinLong, ErrorsOfMeansCoverTheTrueMean) {
   const Chain chain(5);
-  const double truth = 2 * chain.topology.bonds() * 0.5 * kT;
+  const double step = 0.3 * chain.limit(), of_bend = 2 * chain.topology.bonds() * 0.5 * kT,
+               of_motion = 6 * chain.topology.elements() * 0.5 * kT;
   constexpr int runs = 300, values = 2000;
-  int within = 0;
-  double correlation = 0;
+  int bend_within = 0, motion_within = 0;
+  double correlation = 0, motion = 0, at_the_end = 0;
   for (int run = 1; run <= runs; ++run) {
-    Simulation s = chain.make(0.1 * chain.limit(), langevin(room, 8, static_cast<std::uint64_t>(run)));
+    Simulation s = chain.make(step, langevin(room, 8, static_cast<std::uint64_t>(run)));
     s.steps(3000);
-    std::vector<double> bend;
+    std::vector<double> bend, kinetic;
     while (bend.size() < values) {
       s.steps(10);
       bend.push_back(s.forces().energy.bend);
+      const double now = kinetic_energy(s.topology(), s.state());
+      kinetic.push_back(now + missing_kinetic(s, step));
+      at_the_end += now / runs / values;
     }
-    const TimeMean mean = time_mean(bend);
-    ASSERT_TRUE(std::isfinite(mean.error)) << run;
-    within += std::fabs(mean.mean - truth) < mean.error;
+    const TimeMean mean = time_mean(bend), moving = time_mean(kinetic);
+    ASSERT_TRUE(std::isfinite(mean.error) && std::isfinite(moving.error)) << run;
+    bend_within += std::fabs(mean.mean - of_bend) < mean.error;
+    motion_within += std::fabs(moving.mean - of_motion) < moving.error;
     correlation += mean.rows / runs;
+    motion += moving.mean / runs;
   }
-  RecordProperty("within", within);
+  RecordProperty("bend_within", bend_within);
+  RecordProperty("motion_within", motion_within);
   EXPECT_GT(correlation, 1) << "neighbouring values are alike";
-  EXPECT_NEAR(within / static_cast<double>(runs), 0.683, 0.054);
+  EXPECT_NEAR(bend_within / static_cast<double>(runs), 0.683, 0.054);
+  EXPECT_NEAR(motion_within / static_cast<double>(runs), 0.683, 0.054);
+  EXPECT_NEAR(motion / of_motion, 1, 2e-3);
+  EXPECT_LT(at_the_end / of_motion, 0.996);
 }
 
 // From 100 to 400 K and back, slowly against the coupling. 6 x 400 kinetic terms: 3 % in a single reading, 1 % in

@@ -81,8 +81,8 @@ class ParameterSet(Mapping[str, Quantity]):
     def changed(
         self, changes: Mapping[str, float] = {}, out: str | os.PathLike[str] = "", **more: float
     ) -> ParameterSet:
-        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is. Where
-        the law of stretch is changed, the pull of atoms, `[bond.pull]`, is left out.
+        """Another set with other numbers, as a file. They count as chosen and exact; all else stays as it is. The
+        forces of `[bond.pull]` follow the force that the other terms of the bond have where the pull begins.
 
         Arguments:
             changes: values by name, each in the unit that this set has it in: {"bond.EA": 650}
@@ -94,8 +94,7 @@ class ParameterSet(Mapping[str, Quantity]):
         target = os.path.abspath(out)
         if os.path.exists(target):
             raise InputError(f"{os.fspath(out)}: exists; choose another name", os.fspath(out), key="out")
-        with open(self._path, "rb") as file:
-            tables = tomllib.load(file)
+        tables = tomllib.loads(_core.set_to_change(self._path))
         for name, value in {**changes, **{self._by_last(k): v for k, v in more.items()}}.items():
             if name not in self._quantities:
                 raise InputError(f'{self.name}: there is no number "{name}"; see list() of the set', self._path, key=name)
@@ -103,8 +102,6 @@ class ParameterSet(Mapping[str, Quantity]):
             for key in name.split("."):
                 at = at[key]
             at.update(value=float(value), standard_error=0.0, origin="chosen")
-            if name.startswith(("bond.EA", "bond.anharmonic.")):
-                tables["bond"].pop("pull", None)  # which goes on from these
         tables["meta"]["name"] = os.path.splitext(os.path.basename(target))[0]
         write_whole(target, toml_of(tables).encode())
         try:

@@ -190,6 +190,10 @@ std::vector<TermEvent> ForceTerms::events() const {
   return all;
 }
 
+void ForceTerms::forget_events() {
+  for (Working& w : terms_) w.term->forget_events();
+}
+
 std::vector<double> ForceTerms::memory() const {
   TermStates all;
   for (const Working& w : terms_) {

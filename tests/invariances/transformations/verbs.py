@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import tomllib
@@ -282,8 +283,7 @@ def by_lammps(case):
     near("steps", mine["step"][-1], theirs["step"][-1], 0)
     leave = ("time_step_fs", "torque_upper_nN_nm", "torque_lower_nN_nm", "tension_upper_nN", "tension_lower_nN",
              "work_upper_eV", "work_lower_eV", "stress_GPa", "specific_stress_N_per_tex", *ONE_CLAMP_ONLY)
-    # Friction begins where the list is made anew, which LAMMPS does at other steps.
-    within = 1e-2 if "friction" in scene else 1e-6
+    within = 1e-6
     same_columns(mine, theirs, within, 0.1 * within, last=True, leave=(*leave, "friction_slips", "slip_nm"))
 
 
@@ -340,3 +340,90 @@ def solver_of_a_relaxation(case):
     skip_if(any(out.code == 4 for out in outs), "it does not come to rest within the steps")
     same_columns(outs[0].log, outs[1].log, 5e-3, 1e-5, only=("stretch_eV", "bend_eV", "twist_eV", "vdw_eV"), last=True,
                  floor=1e-4)
+
+
+# Numbers of a scene that may have a standard error.
+PROPERTIES = {"damping": ("contact_viscosity_eV_ps_per_nm3", "bond_damping_per_ps"),
+              "friction": ("strength_pN_per_nm", "spin_strength_pN_per_nm", "end_strength_pN", "drag_eV_ps_per_nm3"),
+              "links": ("stiffness_nN_per_nm", "breaks_at_nN"), "failure": ("strain",),
+              "tether": ("stiffness_nN_per_nm",)}
+
+
+@transformation
+def error_by_errors_or_by_hand(case):
+    """How a result follows a number that has an error: by `errors`, or by two runs with other numbers."""
+    scene = case.scene.with_keys(parameters=exact_sets(case))
+    if all("from" in table for table in scene.list("friction")):
+        scene["friction"] = [{"strength_pN_per_nm": 4}]
+    skip_if(scene.relaxes() and "tether" not in scene, "what takes energy has no part in a relaxation")
+    skip_if(scene.get("contact", {}).get("law") == "none", "nothing rubs without contacts")
+    if scene.relaxes():
+        scene.pop("friction")
+    numbers = [(name, k, key) for name, keys in PROPERTIES.items() for key in keys
+               for k, table in enumerate(tables_of(scene, name)) if table.get(key, 0) > 0]
+    name, k, key = case.random.choice(numbers)
+    value = tables_of(scene, name)[k][key]
+
+    def with_value(v):
+        out = scene.copy()
+        tables_of(out, name)[k][key] = v
+        return out
+
+    one = case.run(with_value({"value": value, "standard_error": 0.1 * value}))
+    said = case.bench.call("errors", one.path.name, "--json", "--quiet", "-j", 1)
+    if said.returncode != 0:
+        raise Differs(f"errors of {name}.{key} ended with {said.returncode}: {said.stderr.strip()[-200:]}")
+    # The runs of `errors` take the step of the first one.
+    run = {} if scene.relaxes() else {"time_step_fs": one.manifest["time_step_fs"]}
+    up, down = (case.run(with_value(v).with_keys(run=run)).log for v in (1.1 * value, 0.9 * value))
+    log = one.log
+    for column, entry in json.loads(said.stdout)["at_the_end"].items():
+        if scene.source == "film" and column in OF_A_ROPE:
+            continue
+        here, plus, minus = (x[column][-1] if column in x else math.nan for x in (log, up, down))
+        by_hand, bent = 0.5 * abs(plus - minus), 0.5 * abs(plus + minus - 2 * here)
+        if bent > by_hand:  # not linear
+            by_hand = math.hypot(by_hand, bent)
+        if entry["standard_error"] is not None and math.isfinite(by_hand):
+            near(f"error of {column} by {name}.{key}", entry["standard_error"], by_hand, 1e-4, 1e-8 * (1 + abs(here)))
+
+
+def tables_of(scene, name):
+    found = scene.get(name, [])
+    return [found] if isinstance(found, dict) else found
+
+
+def exact_sets(case):
+    """The sets of the scene as files whose numbers have no errors."""
+    found = []
+    for name in case.scene.sets():
+        text = (case.bench.data("parameters") / f"{name}.toml").read_text()
+        text = re.sub(r'standard_error = ("[^"]*"|[^,} ]+)', "standard_error = 0", text)
+        text = re.sub(r"(?m)^(registry +=.*?value = )[^,]+", r"\g<1>0", text)
+        (case.folder / f"exact-{name}.toml").write_text(text)
+        found.append(f"exact-{name}.toml")
+    return found if isinstance(case.scene["parameters"], list) else found[0]
+
+
+@transformation
+def rest_at_any_viscosity(case):
+    """Where `rest` says that a rope comes to rest, whatever its viscosity, within the errors that it says."""
+    scene = case.scene
+    skip_if("twist" not in scene or scene.source != "rope", "it is no rope under a moment")
+    skip_if(scene.relaxes() or scene.has_strands() or scene.has_memory() or scene["twist"].get("geometric_only"),
+            "what remembers has many states of rest, and a relaxation no time")
+    rope = {"tubes": 7, "length_nm": 24}
+    (case.folder / "rests.toml").write_text(scene.with_keys(
+        rope=None, start=None, damping=None, limits=None, run=None, thermostat=None).with_keys(
+        rope=rope, twist={"moment_nN_nm": 15, "rate_nN_nm_per_ps": 2, "hold_ps": 300}).text())
+    found = []
+    for viscosity in (2.7, 40):
+        done = case.bench.call("rest", "rests.toml", "--out", "rests", "--viscosity", viscosity, "--json", "--quiet",
+                               "--force", "-j", 1)
+        skip_if(done.returncode not in (0, 4), "refused: " + done.stderr.strip()[-120:])
+        said = json.loads(done.stdout)
+        if said["verdict"] in ("rests", "creeps"):
+            found.append(said["estimate"]["geometric_twist"])
+    skip_if(len(found) < 2, "it is not said to rest, nor to creep to a rest")
+    one, other = found
+    near("twist at rest", one["value_deg"], other["value_deg"], 0, 2 * math.hypot(one["error_deg"], other["error_deg"]))

@@ -1,6 +1,7 @@
 // Correlations of the errors of a set: their table, and the covariance that follows.
 #include "io/parameters_toml.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 
 #include "io/files.hpp"
 #include "model/error.hpp"
+#include "plan/scene_edit.hpp"
 #include "report/page.hpp"
 
 namespace ropewalk {
@@ -89,10 +91,65 @@ TEST(PullOfASet, IsWrittenAsItIsRead) {
   const auto begin = std::find_if(without.quantities.begin(), without.quantities.end(),
                                   [](const Quantity& q) { return q.key == "bond.pull.end"; });
   ASSERT_NE(begin, without.quantities.end());
-  without.quantities.erase(begin);
+  without.quantities.erase(
+      std::remove_if(without.quantities.begin(), without.quantities.end(),
+                     [](const Quantity& q) { return q.key.rfind("bond.pull.", 0) == 0; }),
+      without.quantities.end());
   const ParameterSet old = parameters_of_text(parameters_text(without, ""), "set.toml");
   EXPECT_FALSE(old.pull);
   EXPECT_EQ(old.end_of_stretch(), old.anharmonic->max_strain);
+}
+
+// Another EA, and another term of strain: by every way the pull begins where the window ends and keeps its shape.
+// Nothing of a set that is unchanged is scaled, not by a bit, and one that does not say where its pull begins is as it
+// was.
+TEST(PullOfASet, FollowsTheEdgeOfTheWindow) {
+  const std::string text = read_file(path);
+  const ParameterSet set = parameters_of_text(text, path);
+  const auto force = [](const ParameterSet& s, double strain) {
+    return s.bond.stretch * strain + strain_energy(*s.anharmonic, s.anharmonic->max_strain, 0).by_strain +
+           stretch_beyond(*s.anharmonic, s.bond.stretch, strain).by_strain;
+  };
+  const double start = set.anharmonic->max_strain, step = set.anharmonic->pull_step;
+  for (int k = 1; k <= PULL_STEPS; ++k)
+    EXPECT_NEAR(force(set, start + k * step) / set.pull->force[static_cast<std::size_t>(k)], 1, 1e-12) << k;
+  const auto without = [](std::string lines) {
+    for (const char* key : {"start", "edge_force"})
+      if (const auto at = lines.find(std::string("\n") + key + " "); at != std::string::npos)
+        lines.erase(at, lines.find('\n', at + 1) - at);
+    return lines;
+  };
+  const std::string older = without(text);
+  ASSERT_NE(older, text);
+  const ParameterSet of_older = parameters_of_text(older, path);
+  const Anharmonic &law = *set.anharmonic, &older_law = *of_older.anharmonic;
+  EXPECT_TRUE(std::equal(law.pull_force, law.pull_force + PULL_STEPS + 1, older_law.pull_force));
+  EXPECT_EQ(with_start_of_pull(text, path), text);
+  EXPECT_NE(with_start_of_pull(older, path).find("edge_force"), std::string::npos);
+  const std::string head = "[bond.pull]\n";
+  const auto table = older.find(head), end = older.find("\n\n", table);
+  std::string keys = "pull." + older.substr(table + head.size(), end + 1 - table - head.size());
+  keys.insert(keys.find("\nend") + 1, "pull.");
+  std::string dotted = older.substr(0, table) + older.substr(end + 2);
+  dotted.insert(dotted.find("EA "), keys);
+  ASSERT_EQ(parameters_of_text(dotted, path).pull->force, set.pull->force);
+  for (const std::string& base : {text, older, dotted})
+    for (const auto& [key, factor] : {std::pair("bond.EA", 0.6), std::pair("bond.anharmonic.e3", 1.1)}) {
+      const std::string file = with_start_of_pull(base, path);
+      const double value = find_quantity(set, key)->value;
+      const ParameterSet by_text = parameters_of_text(
+          with_value(file, std::string(key) + ".value", fmt::format("{:.17g}", factor * value), path), path);
+      ParameterSet in_memory = parameters_of_text(base, path);
+      for (Quantity& q : in_memory.quantities)
+        if (q.key == key) q.value = factor * value;
+      for (const ParameterSet& other : {by_text, parameters_of_text(parameters_text(in_memory, ""), path)}) {
+        const double edge = edge_of_window(*other.anharmonic, other.bond.stretch).force /
+                            edge_of_window(*set.anharmonic, set.bond.stretch).force;
+        EXPECT_LT(edge, 0.99) << key;
+        for (int k = 1; k <= PULL_STEPS; ++k)
+          EXPECT_NEAR(force(other, start + k * step) / force(set, start + k * step), edge, 1e-7) << key << ' ' << k;
+      }
+    }
 }
 
 TEST(PullOfASet, ThatCannotBeIsRefused) {
@@ -114,6 +171,13 @@ TEST(PullOfASet, ThatCannotBeIsRefused) {
   EXPECT_THAT(message([](ParameterSet& s) { s.pull->force[5] = s.pull->force[4]; }),
               HasSubstr("bond.pull.force: does not rise from value 4 to value 5"));
   EXPECT_THAT(message([](ParameterSet& s) { s.pull->force[0] *= 1.2; }), HasSubstr("calibrate the set anew"));
+  const auto put = [](ParameterSet& set, const std::string& key, double value) {
+    for (Quantity& q : set.quantities)
+      if (q.key == key) q.value = value;
+  };
+  EXPECT_THAT(message([&](ParameterSet& s) { put(s, "bond.anharmonic.max_strain", 0.05); }),
+              HasSubstr("bond.pull.start: is "));
+  EXPECT_THAT(message([&](ParameterSet& s) { put(s, "bond.pull.edge_force", 1); }), HasSubstr("edge_force is 1 nN"));
   EXPECT_THAT(message([&](ParameterSet& s) { put_end(s, 0.01); }), HasSubstr("bond.pull.end"));
   EXPECT_THAT(message([&](ParameterSet& s) { put_end(s, 0.9); }), HasSubstr("rises too little"));
 }

@@ -25,9 +25,8 @@ namespace {
 
 using calibrate::Measured;
 
-// Registry bears 3 % of a pair of (5,5). Heat loosens the contact: by 1.3 % at 100 K (warm-bundle), so some 4 %
-// here.
-constexpr double binding_tolerance = 0.07;
+// Registry bears 3 % of a pair of (5,5); the rest is for heat, which loosens the contact.
+constexpr double binding_tolerance = 0.05;
 constexpr double sigmas = 3;
 // Relative to the range of a column, stored against fresh. Rounding on another machine leads atoms to another
 // trajectory.
@@ -224,8 +223,8 @@ CaseResult run(const CaseContext& context) {
       "length of contact, a thirtieth and "
       "less of the default viscosity. The law has no such drag unless a scene gives one.");
   result.remarks.push_back(
-      "The tolerance was 5 % at first, which left out that heat loosens the contact. With 7 % like tubes still "
-      "miss by a little; this miss is declared.");
+      "Like tubes miss the tolerance, and this miss is declared. Registry bears 3 % of the binding, and heat takes "
+      "some 4 %, as far as the 1.3 % of a bundle at 100 K can be carried on to 300 K; the rest is not explained.");
   return result;
 }
 
@@ -252,7 +251,7 @@ const RegisteredCase registered([] {
       "LAMMPS at 300 K: Tersoff within each tube, Lennard-Jones between tubes, no bath while tubes move. Mean "
       "force of the other tubes "
       "on the middle one, without the period of the lattice; where it spins, torque over radius. At 10 m/s within "
-      "7 % of the force that draws it out, and three standard errors.";
+      "5 % of the force that draws it out, and three standard errors.";
   c.literature =
       "A. P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS); J. "
       "Servantie, P. "

@@ -41,6 +41,12 @@ struct Contact {
   bool over = false;
 };
 
+// Two elements that may come into contact.
+struct Candidate {
+  int a = 0, b = 0;
+  bool together = false, begins = false;  // they have a contact; they come into it
+};
+
 // Where a pair is. With the forces A on s and B on g, and w from a to b,
 //   v_a = A along_a + B turning_a, v_b likewise:  force on a  v_a + v_b,  torque on a  w x v_a,  on b  w x v_b.
 struct Pair {
@@ -82,11 +88,10 @@ class DryFrictionTerm : public ForceTerm {
   void prepare(const ListedScene& scene) override {
     know(scene.topology, scene.state);
     take_up(scene.state);
-    if (!scene.again) {
-      drop_those_that_are_over();
-      find(scene);
-    }
+    find_candidates(scene);
+    if (!scene.again) drop_those_that_are_over();
     index();
+    if (!scene.again) begin_contacts(scene.state);
   }
 
   void gather(const State& state) override {
@@ -121,6 +126,7 @@ class DryFrictionTerm : public ForceTerm {
       all.others = all.others || of.others;
     }
     if (all.others) index();
+    if (begin_contacts(state)) gather(state);
     return all.update;
   }
 
@@ -190,7 +196,8 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   std::size_t bytes() const override {
-    return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + elements_.size() * sizeof(Frame);
+    return contacts_.size() * (sizeof(Contact) + sizeof(Now)) + candidates_.size() * sizeof(Candidate) +
+           elements_.size() * sizeof(Frame);
   }
 
  private:
@@ -201,7 +208,8 @@ class DryFrictionTerm : public ForceTerm {
   };
   // What a contact has to know of an element, since a scene may move in memory.
   struct Element {
-    int number = 0;  // in the scene
+    int number = 0;        // in the scene
+    std::size_t tube = 0;  // likewise
     int type = 0;
     bool own = true, ends_tube = false;
     double length = 0, radius = 0;  // nm
@@ -231,6 +239,7 @@ class DryFrictionTerm : public ForceTerm {
         const std::size_t of_scene = tube_of(number);
         elements_[static_cast<std::size_t>(i)] = {
             number,
+            of_scene,
             topology.tube_type[static_cast<std::size_t>(tube)],
             topology.owns(i),
             number == tube_begin_[of_scene] || number + 1 == tube_begin_[of_scene + 1],
@@ -397,7 +406,8 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // --- all contacts ---
-  // The records of a memory become contacts, where this process owns one of both elements.
+  // The records of a memory become contacts, where this process has both elements. Those of other processes count as
+  // well: a contact may pass on to an own element, and the tube of an own element may have a contact already.
   void take_up(const State& state) {
     for (const TermRecord& r : remembered_) {
       Contact c{place_of(r.element),
@@ -409,7 +419,7 @@ class DryFrictionTerm : public ForceTerm {
                 {r.numbers[6], r.numbers[7]},
                 r.numbers[8] == 1,
                 false};
-      if (c.a < 0 || c.b < 0 || !(element(c.a).own || element(c.b).own)) continue;
+      if (c.a < 0 || c.b < 0) continue;
       if (!c.placed) {
         place(c, pair_of(c.a, c.b, state));
         if (std::fabs(c.s) > 0.5 * element(c.b).length && !pass_on(c, state)) continue;
@@ -424,56 +434,80 @@ class DryFrictionTerm : public ForceTerm {
                     contacts_.end());
   }
 
-  // New ones, from the pairs of the list. Each process has the pairs of some elements, and all must know the
-  // others.
-  void find(const ListedScene& scene) {
-    std::vector<int> found;  // numbers of a and b, one after another
-    const double reach = begins_within + 2 * scene.topology.largest_radius() + scene.topology.longest_element();
+  // Pairs that may come into contact before the next list. Each process has the pairs of some elements, and all must
+  // know the others. The places are those that the list was built for: a resumed run finds the same pairs.
+  void find_candidates(const ListedScene& scene) {
+    candidates_.clear();
+    std::vector<int> numbers;  // of a and b, one after another
+    const Vec3Array& listed = scene.list.reference();
+    const double half = 0.5 * scene.topology.longest_element();
     for (int i = 0; i < scene.topology.elements(); ++i) {
       if (!element(i).own) continue;
       scene.list.for_neighbours(i, [&](int j) {
-        const Vector3 w =
-            scene.state.position[static_cast<std::size_t>(j)] - scene.state.position[static_cast<std::size_t>(i)];
-        if (!(w.squaredNorm() < reach * reach) || !acts_between(i, j)) return;
-        const Pair p = pair_of(i, j, scene.state);
-        const double near = element(i).radius + element(j).radius + begins_within;
-        if (p.across < square(near) && std::fabs(p.cosine) > begins_above &&
-            std::fabs(p.s) <= 0.5 * element(j).length) {
-          found.push_back(element(i).number);
-          found.push_back(element(j).number);
-        }
+        if (!acts_between(i, j)) return;
+        const double reach =
+            std::hypot(element(i).radius + element(j).radius + begins_within, half) + scene.list.skin;
+        const Vector3 w = listed[static_cast<std::size_t>(j)] - listed[static_cast<std::size_t>(i)];
+        if (!(w.squaredNorm() < square(reach))) return;
+        numbers.push_back(element(i).number);
+        numbers.push_back(element(j).number);
       });
     }
-    if (scene.others) found = scene.others->join(found);
-    for (std::size_t k = 0; k < found.size(); k += 2) {
-      const int a = place_of(found[k]), b = place_of(found[k + 1]);
-      if (a < 0 || b < 0 || !(element(a).own || element(b).own)) continue;
-      Contact c;
-      c.a = a;
-      c.b = b;
-      place(c, pair_of(a, b, scene.state));
-      contacts_.push_back(c);
+    if (scene.others) numbers = scene.others->join(numbers);
+    for (std::size_t k = 0; k < numbers.size(); k += 2)
+      if (const int a = place_of(numbers[k]), b = place_of(numbers[k + 1]); a >= 0 && b >= 0)
+        candidates_.push_back({a, b});
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& x, const Candidate& y) {
+      return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+    });
+  }
+
+  // Those candidates whose tubes have come together. Whether there are any.
+  bool begin_contacts(const State& state) {
+    for_each((candidates_.size() + block - 1) / block, candidates_.size() > parallel_from, [&](std::size_t b) {
+      for (std::size_t k = b * block, end = std::min(k + block, candidates_.size()); k < end; ++k) {
+        Candidate& c = candidates_[k];
+        if (c.together) continue;
+        const Pair p = pair_of(c.a, c.b, state);
+        c.begins = p.across < square(element(c.a).radius + element(c.b).radius + begins_within) &&
+                   std::fabs(p.cosine) > begins_above && std::fabs(p.s) <= 0.5 * element(c.b).length;
+      }
+    });
+    const std::size_t before = contacts_.size();
+    for (const Candidate& c : candidates_) {
+      if (c.together || !c.begins) continue;
+      // Of two elements of a tube that are equally near, the first.
+      const bool second = contacts_.size() > before && contacts_.back().a == c.a && are_one(contacts_.back(), c);
+      if (second) continue;
+      Contact contact;
+      contact.a = c.a;
+      contact.b = c.b;
+      place(contact, pair_of(c.a, c.b, state));
+      contacts_.push_back(contact);
     }
-    // Older contacts stand first where two are one.
-    std::stable_sort(contacts_.begin(), contacts_.end(),
-                     [](const Contact& x, const Contact& y) { return x.a < y.a; });
-    std::vector<Contact> kept;
-    for (const Contact& c : contacts_) {
-      bool known = false;
-      for (auto old = kept.rbegin(); old != kept.rend() && old->a == c.a && !known; ++old)
-        known = tube_of(element(old->b).number) == tube_of(element(c.b).number) &&
-                std::abs(element(old->b).number - element(c.b).number) <= 2;
-      if (!known) kept.push_back(c);
-    }
-    contacts_ = std::move(kept);
+    if (contacts_.size() == before) return false;
+    drop_those_that_are_over();
     std::stable_sort(contacts_.begin(), contacts_.end(),
                      [](const Contact& x, const Contact& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+    index();
+    return true;
+  }
+  // One element has one contact with a tube in one place.
+  bool are_one(const Contact& contact, const Candidate& c) const {
+    return element(contact.b).tube == element(c.b).tube &&
+           std::abs(element(contact.b).number - element(c.b).number) <= 2;
   }
 
   void index() {
     const auto whole = [&](std::size_t k, int end) { return contacts_[k].over ? -1 : end; };
     of_first_.sort_in(elements_.size(), contacts_.size(), [&](std::size_t k) { return whole(k, contacts_[k].a); });
     of_second_.sort_in(elements_.size(), contacts_.size(), [&](std::size_t k) { return whole(k, contacts_[k].b); });
+    for (Candidate& c : candidates_) {
+      const auto contacts = of_first_.of(c.a);
+      c.together = std::any_of(contacts.begin(), contacts.end(), [&](int k) {
+        return are_one(contacts_[static_cast<std::size_t>(k)], c);
+      });
+    }
   }
 
   DryFriction law_;
@@ -482,6 +516,7 @@ class DryFrictionTerm : public ForceTerm {
   std::vector<Element> elements_;
   TermState remembered_;  // until the next list
   std::vector<Contact> contacts_;
+  std::vector<Candidate> candidates_;  // by a, then b
   std::vector<Frame> frames_;  // of the elements, in the state of the evaluation
   std::vector<Now> now_;       // of the contacts, likewise
   Rows of_first_, of_second_;  // contacts by a and by b

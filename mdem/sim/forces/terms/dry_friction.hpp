@@ -30,9 +30,6 @@
 // ends beyond 0.47 nm, at angles above 66 degrees, and where a passes the end of the tube. It is a law for tubes
 // side by side: crossed ones have a contact or none, by chance.
 //
-// New contacts are looked for where the neighbour list is made anew. One may begin that much late: tubes whose contacts
-// change differ by some 1e-4 of their forces with the margin of the list.
-//
 // Source: springs that remember contacts, P. A. Cundall, O. D. L. Strack, Geotechnique 29, 47 (1979),
 // DOI 10.1680/geot.1979.29.1.47. Slips that are measured on the bodies, in place of sums of velocities, are ours.
 // Units nm, ps, eV.

@@ -209,6 +209,29 @@ TEST(DryFriction, FollowsTheOverlap) {
               40 * pN * 6 * 1.01 * a);
 }
 
+// A tube that leaves the others and comes back, within one neighbour list: what it then slides counts from there.
+TEST(DryFriction, BeginsInTheStepInWhichTubesMeet) {
+  Alone gone(axial), stayed(axial);
+  const auto with_outer_tube = [&](const Vector3& by) {
+    State s = gone.p.state;
+    for (int e = gone.p.topology.tube_begin[1]; e < gone.p.topology.tube_begin[2]; ++e)
+      s.position.add(static_cast<std::size_t>(e), by);
+    return s;
+  };
+  const Vector3 begin = gone.p.state.position[static_cast<std::size_t>(gone.p.topology.tube_begin[1])];
+  const Vector3 outwards = Vector3(begin.x(), begin.y(), 0).normalized();
+  const State slid = with_outer_tube({0, 0, 0.002});
+  gone.at(with_outer_tube(0.3 * outwards), true);
+  EXPECT_NEAR(gone.energy(slid), 0, 1e-12) << "it has left";
+  gone.at(with_outer_tube(0.09 * outwards), true);
+  EXPECT_GT(gone.energy(slid), 0) << "it meets them again";
+  Alone back(axial);
+  back.at(with_outer_tube(0.3 * outwards), true);
+  back.at(back.p.state, true);
+  EXPECT_GT(stayed.energy(slid), 1e-6);
+  EXPECT_NEAR(back.energy(slid), stayed.energy(slid), 1e-9);
+}
+
 TEST(DryFriction, ActsBetweenItsTypesOnly) {
   const auto energy = [](const std::string& types) {
     Scene scene = scene_of_text(
