@@ -87,9 +87,8 @@ struct RopeComparison {
   int increments = 6;
   std::vector<bool> axial_free = {false, true};  // the series: grips fixed, and free along the axis
   std::vector<double> collapsed;                 // degrees beyond the collapse, compared within 10 %
-  std::vector<std::string> remarks;
 };
 // A case of such ropes, without its order, its sets and its faults.
-Case twisted_rope_case(const RopeComparison& comparison, const std::string& title);
+Case twisted_rope_case(const RopeComparison& comparison);
 
 }  // namespace ropewalk::validate

@@ -411,46 +411,16 @@ CaseResult run(const CaseContext& context) {
                                        "The bundle of atoms expands more: its walls vibrate."),
                     temperature_figure("vdW energy per length", "eV/nm", &Sample::vdw, model, atoms,
                                        "The bundle of atoms loses more cohesion: its walls vibrate.")};
-  result.remarks = {
-      "The elements are rigid walls and move as such. They miss most of the expansion and of the loss of cohesion, "
-      "which are 0.1 % of the spacing and 1.3 % of the energy in atoms. Vibrating walls explain the missing part: "
-      "the wall of a warm single tube moves by 4 to 5 pm about its mean radius, and this changes the contact "
-      "energy by the curvature of its well. The estimate takes both walls as independent and free. It gives the "
-      "loss of energy but too much of the expansion, since walls in contact are neither.",
-      "The atoms are classical. In real walls many of these vibrations are frozen at 100 K.",
-      "At rest the tubes of atoms are 2.2 pm farther apart. The forces of lj/cut leave out the step of the "
-      "truncated energy; this explains 0.3 pm, by which it moves the minimum of smooth shells. The rest should be "
-      "registry, as is the 1.4 % of energy; it is not resolved."};
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "warm-bundle";
-  c.group = Case::Group::atoms;
   c.order = 110;
   c.tier = Case::Tier::full;
   c.sets = {"cnt-5-5-tersoff"};
   c.only_these = "it compares with stored atoms of (5,5) at 100 K";
-  c.title = "A 7-tube bundle of (5,5) at 100 K";
-  c.why =
-      "Ropes are simulated at a temperature. Elements move as rigid pieces of tube. A case at rest cannot tell "
-      "whether their motion widens and weakens a bundle as the motion of atoms does.";
-  c.setup = fmt::format(
-      "Seven (5,5) tubes of 3.8 nm with free ends, hexagonally packed. Atoms: Langevin thermostat, steps of 1 fs, "
-      "{} ps after {} ps. Elements: velocities redrawn from Maxwell's distribution about every {} ps, {} ps "
-      "after {} ps. Spacing of neighbours and van der Waals energy, at rest and at {} K, with standard errors from "
-      "{} blocks.",
-      md_sampling, md_equilibration, draw_every, sampling, equilibration, temperature, blocks);
-  c.oracle =
-      "LAMMPS, classical: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set "
-      "between tubes. Spacing within 0.5 %, energy within 3 %, their changes with temperature within 30 % and "
-      "three standard errors. The change of energy is also allowed `kT/2` for the spin and for the slide of each "
-      "tube, since registry resists them in atoms only.";
-  c.literature =
-      "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
-      "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS); H. C. "
-      "Andersen, J. Chem. Phys. 72, 2384 (1980), DOI 10.1063/1.439486 (redrawn velocities)";
   c.run = run;
   c.turns_red = {{wrong_contact(2), {"vdW energy per length, at rest", "vdW energy per length, 100 K"}}};
   // Rigid walls lack this much. The samples scatter by a tenth of it.

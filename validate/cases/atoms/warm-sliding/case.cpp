@@ -211,51 +211,16 @@ CaseResult run(const CaseContext& context) {
         {model_points("atoms (LAMMPS)", speed, atoms, 0), model_points("corrugation", speed, corrugation, 1),
          model_points("dry friction", speed, dry, 2)});
   }
-  result.remarks.push_back(
-      "Warm tubes slide over their corrugation and lose nothing that could be measured: like tubes are drawn out "
-      "with the same force at 10 and "
-      "at 100 m/s, 9 % below the binding at rest, unlike ones 3 to 7 % below it. The same strength as dry friction "
-      "would more than double "
-      "the force between like tubes. So the corrugation is the right reading of the strengths, for tubes of this "
-      "length.");
-  result.remarks.push_back(
-      "A tube that is turned is braked by 0.4 and 0.3 nN at its wall, with 100 m/s: 0.9 and 0.7 eV ps/nm³ per "
-      "length of contact, a thirtieth and "
-      "less of the default viscosity. The law has no such drag unless a scene gives one.");
-  result.remarks.push_back(
-      "Like tubes miss the tolerance, and this miss is declared. Registry bears 3 % of the binding, and heat takes "
-      "some 4 %, as far as the 1.3 % of a bundle at 100 K can be carried on to 300 K; the rest is not explained.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "warm-sliding";
-  c.group = Case::Group::atoms;
   c.order = 55;
   c.tier = Case::Tier::full;
   c.sets = {"cnt-5-5-tersoff", "cnt-9-0-tersoff"};
   c.only_these = "it compares with stored atoms of (5,5) and (9,0) at 300 K";
-  c.title = "A tube of a rope led along the others and turned, at 300 K";
-  c.why =
-      "Friction decides how a twisted rope moves. A set has the strength of the corrugation at 0 K; whether warm "
-      "tubes lose energy "
-      "as they slide over it is another question.";
-  c.setup = fmt::format(
-      "Seven tubes of {} nm, the middle one (5,5), drawn out by {} nm, the others (5,5) or (9,0). The lower ends "
-      "of the outer ones are "
-      "held, the upper "
-      "end of the middle one is led along the axis or turned about it, with up to 100 m/s at the wall.",
-      length, drawn);
-  c.oracle =
-      "LAMMPS at 300 K: Tersoff within each tube, Lennard-Jones between tubes, no bath while tubes move. Mean "
-      "force of the other tubes "
-      "on the middle one, without the period of the lattice; where it spins, torque over radius. At 10 m/s within "
-      "5 % of the force that draws it out, and three standard errors.";
-  c.literature =
-      "A. P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS); J. "
-      "Servantie, P. "
-      "Gaspard, Phys. Rev. Lett. 97, 186106 (2006), DOI 10.1103/PhysRevLett.97.186106 (friction of rotating tubes)";
   c.run = run;
   c.turns_red = {wrong_contact(2)};
   // Like tubes at 300 K bind 9 % less than at rest: heat and registry explain 7 %.

@@ -179,34 +179,17 @@ CaseResult run(const CaseContext& context) {
   }
   result.figures.push_back(limits_figure(lines));
   result.figures.push_back(torque_figure(torques));
-  result.remarks.push_back(
-      "The collapse is an instability: other noise and other steps move it by 3 to 5 %, and longer tubes find it "
-      "earlier. Held ends keep a tube round over some diameters.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "tube-collapse";
-  c.group = Case::Group::atoms;
   c.order = 25;
   c.tier = Case::Tier::full;
   c.law = Case::Law::none;
   c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-15-15-tersoff"};
   c.only_these = "it compares with stored atoms of (5,5), (10,10) and (15,15), half an hour of LAMMPS";
-  c.title = "Twisted tubes collapse, long ones earlier";
-  c.why =
-      "Ropes are 40 to 160 nm long. The twist at which a wall collapses into a ribbon limits the energy that they "
-      "store as round tubes.";
-  c.setup =
-      "Tubes of {tube}, 12, 24, 47 and 94 nm between held bands, are twisted step by step with "
-      "a little noise and relaxed until the torque falls.";
-  c.oracle =
-      "LAMMPS with the Tersoff potential: the twist at which the torque falls. The set's limit, `c (1 + 3 "
-      "(r/L)^(3/4))` and at most that of 12 nm, within 10 % where `c` was measured, else 20 %.";
-  c.literature =
-      "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
-      "10.1103/PhysRevLett.76.2511";
   c.run = run;
   c.turns_red = {wrong_GJ(0.9)};
   return c;

@@ -276,41 +276,15 @@ CaseResult run(const CaseContext& context) {
       context, tube.set, "pair-pull-out", 0.001, [&] { return make_pull_out(context, tube.set); }, result);
   add_sliding(sliding, contact_of(tube.model, tube.model, tube.set.element_length), result);
   add_pull_out(pull_out, tube, result);
-  result.remarks.push_back(
-      "The model has no barrier against sliding. The worst case for this are two equal armchair tubes, straight, "
-      "frozen and in registry over their whole length: their barrier grows with the length. Where neighbours are "
-      "twisted or strained differently, the registry changes along the contact and most of the barrier should "
-      "cancel; this is not tested.");
-  result.remarks.push_back(
-      "Where two tubes end side by side, they bind less than their overlap tells. The model overdoes this, since "
-      "its law is wider along the axes than the shells are. We left it so: the error is one number for two ends, "
-      "whatever the length of their tubes, a quarter of it is left where they are 0.6 nm apart, and the force that "
-      "is missing in between is at most a sixth of the force that draws out one contact.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "pair-sliding";
-  c.group = Case::Group::atoms;
   c.order = 50;
   c.tables = {"pair-sliding", "pair-pull-out"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.02 * set.atoms_per_length; };
-  c.title = "Two parallel tubes: sliding and pull-out";
-  c.why =
-      "Tubes of a twisted rope slide along each other. The division into elements must not resist sliding; only "
-      "cohesion must pull tubes back.";
-  c.setup =
-      "Relaxed, frozen {tube} tubes at the distance of the energy minimum. Sliding: a periodic cell "
-      "over one period or half a nanometre, for 16 pairs of turns. Pull-out: tubes of 8 nm at overlaps from 0.5 to "
-      "7.5 nm and with flush ends, averaged over 12 registries.";
-  c.oracle =
-      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones). Mean energy "
-      "and pull-out slope "
-      "within 3 % (registry), corrugation of the rows below 0.001 of the well.";
-  c.literature =
-      "A. N. Volkov, L. V. Zhigilei, ACS Nano 4, 6187 (2010), DOI 10.1021/nn1015902; L. A. Girifalco, M. Hodak, R. "
-      "S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104";
   c.run = run;
   c.turns_red = {wrong_contact(2)};
   c.stays_green = {wrong_GJ(0.9)};

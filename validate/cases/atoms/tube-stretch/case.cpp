@@ -96,16 +96,12 @@ CaseResult run(const CaseContext& context) {
     end_at_collapse(curve);
     add_curve(curve, result);
   }
-  result.remarks.push_back(
-      "Carbon bonds soften in tension and stiffen in compression. The anharmonic bond has the terms of third and "
-      "fourth order, which were fitted to other cells; without them it is 12 % too stiff at 7 % of tension.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "tube-stretch";
-  c.group = Case::Group::atoms;
   c.order = 10;
   c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
   c.law = Case::Law::none;
@@ -113,17 +109,6 @@ const RegisteredCase registered([] {
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, cell_length, 2 * std::size(magnitudes));
   };
-  c.title = "One tube stretched and compressed";
-  c.why = "Twisting a rope stretches its outer tubes and compresses its inner ones: `EA` sets that energy.";
-  c.setup =
-      "Periodic cells of 5 nm of {tube} are strained from -8 to 8 % step by step and relaxed. The "
-      "bond was fitted to other cells.";
-  c.oracle =
-      "Energies of LAMMPS with the Tersoff potential; for a chain of elements `U/L = EA e^2/2 + c3 e^3 + c4 e^4`. "
-      "Within 1 % up to the limit of the set or the collapse of the atoms.";
-  c.literature =
-      "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
-      "10.1103/PhysRevLett.76.2511";
   c.run = run;
   c.turns_red = {wrong_EA(1.1)};
   c.stays_green = {wrong_GJ(0.9), wrong_EI(1.1), wrong_contact(2)};

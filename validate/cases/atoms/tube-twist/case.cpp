@@ -133,17 +133,12 @@ CaseResult run(const CaseContext& context) {
     add_curve(curve, result);
     if (curve.window < curve.end) add_beyond(curve, result);
   }
-  result.remarks.push_back(
-      "A periodic cell has no held ends, which keep a tube round: its wall flattens from three quarters of the "
-      "collapse of 12 nm onwards. The bond of an endless tube has a constant torque from there, and follows the "
-      "atoms within 3 % up to twice that twist.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "tube-twist";
-  c.group = Case::Group::atoms;
   c.order = 20;
   c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
   c.law = Case::Law::none;
@@ -151,18 +146,6 @@ const RegisteredCase registered([] {
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, 2 * shortest_cell, static_cast<double>(shears(set.chirality).size()));
   };
-  c.title = "One tube twisted until it collapses";
-  c.why = "A rope that turns into a helix trades twist, stored by `GJ`, for bending.";
-  c.setup =
-      "Uniformly twisted periodic cells of {tube}, 9 to 24 nm long, with shears up to 0.045 nm/r, chiral tubes in "
-      "either sense, relaxed. The bond was fitted to other cells.";
-  c.oracle =
-      "Energies of LAMMPS with the interatomic potential of the set; for a chain of elements `U/L = GJ t^2/2 + c4 "
-      "(r t)^4` up to the twist at which an endless tube collapses, and its tangent beyond. Within 1 % up to the "
-      "collapse of an endless tube, and within 3 % up to that of 12 nm.";
-  c.literature =
-      "B. I. Yakobson, C. J. Brabec, J. Bernholc, Phys. Rev. Lett. 76, 2511 (1996), DOI "
-      "10.1103/PhysRevLett.76.2511";
   c.run = run;
   c.turns_red = {wrong_GJ(0.9)};
   c.stays_green = {wrong_EA(1.1), wrong_EI(1.1), wrong_contact(2)};

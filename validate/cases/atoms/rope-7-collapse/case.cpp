@@ -1,4 +1,4 @@
-// The rope of rope_7_short.cpp, twisted beyond the collapse of its walls.
+// The rope of rope-7-short, twisted beyond the collapse of its walls.
 #include "cases/common/twisted_rope.hpp"
 
 namespace ropewalk::validate::rope_7_collapse {
@@ -12,10 +12,7 @@ const RegisteredCase registered([] {
   rope.increments = 12;
   rope.collapsed = {45, 60};
   rope.axial_free = {false};
-  rope.remarks = {
-      "Beyond `r tau = 0.04` the walls collapse. The bond's torque is constant from there, at the twist at which a "
-      "clamped tube of this length collapses; its energy is compared within 10 %."};
-  Case c = twisted_rope_case(rope, "Twisted 7-tube rope of {tube}, 8 nm, beyond the collapse");
+  Case c = twisted_rope_case(rope);
   c.order = 90;
   c.only_these =
       "it compares with stored atoms of (10,10), an hour of LAMMPS; other tubes collapse at other angles";

@@ -107,35 +107,16 @@ CaseResult run(const CaseContext& context) {
                   {"energy", "eV"}, "Averaged over the turns of the tubes about their axis.",
                   {{"model", gap, model, 1}, points});
   }
-  result.remarks.push_back(
-      "The model sums the same law over circles of atoms, each averaged over its turn; nothing is fitted. What is "
-      "left is the finite number "
-      "of turns of the atoms.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "coaxial-ends";
-  c.group = Case::Group::atoms;
   c.order = 57;
   c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-15-15-tersoff"};
   c.tables = {"coaxial-ends"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.02 * set.atoms_per_length; };
-  c.title = "Two tubes in line, end against end";
-  c.why =
-      "Tubes of a yarn end inside of it, and the next one in line begins there. A law of endless tubes knows axes "
-      "and no ends: "
-      "it holds two tubes in line more than a nanometre apart.";
-  c.setup =
-      "Two relaxed, frozen tubes {tube} in line, cut flat, at gaps from 0.16 to 1 nm; the same two tubes as a "
-      "strand of the model.";
-  c.oracle =
-      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones), averaged "
-      "over 12 turns. Gap "
-      "within 0.002 nm, energy within 2 % of the depth.";
-  c.literature =
-      "L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104";
   c.run = run;
   c.turns_red = {wrong_contact(1.1)};
   c.stays_green = {wrong_EA(1.1)};

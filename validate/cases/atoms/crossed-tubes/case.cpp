@@ -221,36 +221,15 @@ CaseResult run(const CaseContext& context) {
   result.figures.push_back(angle_figure(list, rows, true));
   result.figures.push_back(distance_figure(list, rows));
   result.figures.push_back(residual_figure(list, rows));
-  result.remarks.push_back(
-      "The law was made from two parallel tubes; no crossing was fitted. By the theorem behind the line law, "
-      "energy and torque at every angle follow. This case tests the theorem with atoms.");
-  result.remarks.push_back(
-      "The forces of LAMMPS give 6 to 7 % less torque than its energies. The law is truncated and not shifted: its "
-      "energy has a step at the cutoff, and the forces leave that step out. The model follows the energies. Atoms "
-      "in motion follow the forces, so that ropes of atoms cohere by 6 to 7 % less than their printed energies. A "
-      "comparison of moving ropes has to take this into account.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "crossed-tubes";
-  c.group = Case::Group::atoms;
   c.order = 60;
   c.tables = {"crossed-tubes"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.6 * set.atoms_per_length; };
-  c.title = "Two crossed tubes: energy and torque against angle";
-  c.why =
-      "Tubes of neighbouring shells of a twisted rope cross at small angles; tubes of a helix or beside a void "
-      "cross at large ones.";
-  c.setup =
-      "Relaxed, frozen {tube} tubes of 12 nm that cross at 30 to 90 degrees, at ten distances, averaged over "
-      "registries; rows of elements of the model in the same place.";
-  c.oracle =
-      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones); for shells "
-      "without atoms `E = E90/sin(angle)`. Energy within 3 % (registry), torque within 5 %, distance of the "
-      "minimum within 0.5 %.";
-  c.literature = "A. N. Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
   c.turns_red = {wrong_contact(2)};
   c.stays_green = {wrong_EI(1.1)};

@@ -179,31 +179,17 @@ CaseResult run(const CaseContext& context) {
     add_published(context.model(context.sets.size() - 1), wells[0], result.figures.back().chart, result);
   result.figures.push_back(residual_figure(curves, wells));
   if (tubes.size() > 1) result.remarks.push_back("Tubes of two kinds use the law for all pairs of radii.");
-  result.remarks.push_back("Registry, how the lattices of two tubes lie on one another, is left out of the model.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "pair-distance";
-  c.group = Case::Group::atoms;
   c.order = 40;
   c.sets = {"cnt-10-10-tersoff", "cnt-5-5-tersoff", "cnt-10-10-paper"};
   c.takes_two = true;
   c.tables = {"pair-distance"};
   c.lammps_seconds = [](const ParameterSet& set) { return 0.02 * set.atoms_per_length; };
-  c.title = "Two parallel tubes: energy against distance";
-  c.why = "Cohesion per length and spacing decide how a rope packs and what a void in it costs.";
-  c.setup =
-      "Relaxed, frozen tubes {tube}, each beside its like and beside every other: a piece of whole periods along a "
-      "longer tube, averaged over 16 registries; rows of elements of the model in the same place.";
-  c.oracle =
-      "Lennard-Jones of LAMMPS, as in the set (2.84 meV, 0.34 nm, cut at 1.2 nm in the shipped ones). Spacing "
-      "within 0.5 %, depth within "
-      "3 % (registry).";
-  c.literature =
-      "L. A. Girifalco, M. Hodak, R. S. Lee, Phys. Rev. B 62, 13104 (2000), DOI 10.1103/PhysRevB.62.13104; A. N. "
-      "Volkov, L. V. Zhigilei, J. Phys. Chem. C 114, 5513 (2010), DOI 10.1021/jp906142h";
   c.run = run;
   c.turns_red = {wrong_contact(2)};
   c.stays_green = {wrong_EA(1.1)};

@@ -137,20 +137,12 @@ CaseResult run(const CaseContext& context) {
     add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
                  "the specimen that kinks first, against the kink curvature of the set", result);
   }
-  result.remarks.push_back(
-      "The cross-section flattens, which the quartic term of the bond describes; without it the bond is 12 to 20 % "
-      "too stiff at the kink. Beyond the kink the moment of the bond is constant, and that of the atoms falls by a "
-      "third.");
-  result.remarks.push_back(
-      "A specimen that is bent far closes on itself. Those of thin tubes are shorter therefore, and turns beyond "
-      "5.6 rad are neither drawn nor compared.");
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "tube-bend";
-  c.group = Case::Group::atoms;
   c.order = 30;
   c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
   c.law = Case::Law::none;
@@ -158,16 +150,6 @@ const RegisteredCase registered([] {
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, short_length + long_length, most / step);
   };
-  c.title = "One tube bent beyond its kink";
-  c.why = "`EI` decides when a rope buckles into a helix. At the kink the model of rigid elements ends.";
-  c.setup =
-      "Finite tubes of {tube}, 8 and 14 nm between held bands (of thin tubes less), are bent step by step to a "
-      "curvature of 0.06 nm/r² and relaxed. The bond was fitted to other lengths.";
-  c.oracle =
-      "Energies of LAMMPS with the interatomic potential of the set, `(E_long - E_short)/(L_long - L_short)`; for "
-      "a chain of elements `U/L = EI k^2/2 + c4 (r k)^4`. Within 1 % up to the kink.";
-  c.literature =
-      "S. Iijima, C. Brabec, A. Maiti, J. Bernholc, J. Chem. Phys. 104, 2089 (1996), DOI 10.1063/1.470966";
   c.run = run;
   c.turns_red = {wrong_EI(1.1)};
   c.stays_green = {wrong_EA(1.1), wrong_GJ(0.9), wrong_contact(2)};

@@ -413,48 +413,16 @@ CaseResult run(const CaseContext& context) {
   }
   result.figures.push_back(residual_figure(all));
   result.figures.push_back(vdw_figure(all));
-  result.remarks = {
-      "Glued, the bundle is one beam: in atoms its stiffness is 98 % of `7 EI + EA sum x^2`. Seven eighths of the "
-      "energy is stretch of the tubes.",
-      "Free, atoms and elements are both softer than `7 EI`, which is a lower limit only for tubes that are all "
-      "bent alike. The couple acts on the middle tube and passes to the six others, whose ends are free, over "
-      "about 2 nm from each clamp. There the middle tube has 2.4 times the mean curvature; in the middle of the "
-      "bundle it has half of the mean and the others 0.6 of it. Elements of a bundle four times as long reach 0.87 "
-      "of `7 EI`.",
-      "Free, the elements are 4 to 6 % too stiff. The load between the tubes bends them within a few radii, where "
-      "tubes shear: without shear in the bonds the difference is 11 to 12 %. The forces of lj/cut, whose well is 5 "
-      "% shallower, explain at most 1.5 % (by a contact that is 6.5 % weaker). The rest grows with the angle: at "
-      "24 degrees the curvature of the middle tube at the clamps is twice that at which a tube has lost 1 % of its "
-      "stiffness. The length of the elements changes the result by 0.2 %. The sliding tubes of atoms are not "
-      "entirely at rest: the last hundred iterations of an increment still lower the energy by 2 to 16 meV."};
   return result;
 }
 
 const RegisteredCase registered([] {
   Case c;
   c.name = "bent-bundle";
-  c.group = Case::Group::atoms;
   c.order = 100;
   c.tier = Case::Tier::full;
   c.sets = {"cnt-5-5-tersoff"};
   c.only_these = "it compares with stored atoms of (5,5), twenty minutes of LAMMPS";
-  c.title = "Bent 7-tube bundle of (5,5), 8.1 nm: tubes that slide, and tubes that cannot";
-  c.why =
-      "A rope of seven tubes that slide is eight times softer in bending than one of tubes that cannot. In the "
-      "model only van der Waals forces couple the tubes.";
-  c.setup =
-      "Seven (5,5) tubes in hexagonal packing, 8.1 nm between the clamps, with ends of 1 nm. The ends are placed "
-      "at those of an arc of unchanged contour length, in atoms and in elements, and the rest is relaxed. Glued: "
-      "the ends of all tubes are held, in steps of 1.5 degrees. Free: only the ends of the middle tube are held, "
-      "in steps of 4 degrees; the six others slide and follow.";
-  c.oracle =
-      "LAMMPS: Tersoff potential within each tube, Lennard-Jones with the cutoff of the parameter set between "
-      "tubes. Energy within 5 %. Where tubes slide, the tolerance adds what atoms may lose by leaving their "
-      "registry: half of the corrugation of a pair, measured on frozen pairs, in each of the 12 contacts. For "
-      "comparison: `K theta^2/(2 L)` with `K = 7 EI` (seven tubes bent alike) and `K = 7 EI + EA sum x^2` (glued).";
-  c.literature =
-      "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (potential); A. P. "
-      "Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 (LAMMPS)";
   c.run = run;
   c.turns_red = {
       {wrong_EA(1.1),
