@@ -24,7 +24,7 @@ struct StepCost {
   double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
   double moved = 0;                  // bytes per element and step, about the least
-  double peak_bytes = 0;             // of the program so far
+  double peak_bytes = 0;             // largest resident memory of the program so far
 };
 
 // After so much time (ps), on as many threads as OpenMP has now.

@@ -11,7 +11,7 @@ import re
 import sys
 from pathlib import Path
 
-LEFT = {"mdem": 335, "calibrate": 0, "validate": 5}
+LEFT = {"mdem": 260, "calibrate": 0, "validate": 5}
 
 COMMENT = re.compile(r"(?:^|[^:\"'/])//+<?\s?(.*)$")
 GENITIVE = re.compile(r"(?:[Oo]f|[Ff]rom|[Bb]y|[Ii]n|[Oo]n) [a-z]")
