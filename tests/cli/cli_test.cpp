@@ -988,11 +988,7 @@ TEST_F(Cli, BenchKnowsScenesByName) {
     EXPECT_GT(b["nodes_per_span"].get<double>(), 1);
     EXPECT_GT(b["radial_evaluations_useful"].get<double>(), 1);
     EXPECT_LT(b["radial_evaluations_useful"].get<double>(), b["radial_evaluations_per_element_step"].get<double>());
-    for (const char* rate :
-         {"contact_GFLOP_per_s", "contact_share_of_peak", "moved_GB_per_s", "moved_share_of_peak"})
-      EXPECT_GT(b[rate].get<double>(), 0) << rate;
-    EXPECT_GT(b["machine"]["peak_GFLOP_per_s"].get<double>(), 0);
-    EXPECT_GT(b["machine"]["peak_GB_per_s"].get<double>(), 0);
+    for (const char* rate : {"contact_GFLOP_per_s", "moved_GB_per_s"}) EXPECT_GT(b[rate].get<double>(), 0) << rate;
     EXPECT_EQ(b["moved_bytes_per_element_step"], both[0]["moved_bytes_per_element_step"]);
     EXPECT_GT(b["moved_bytes_per_element_step"].get<double>(), 256);  // state and axes, read and written
     EXPECT_LT(b["list_share"].get<double>(), 1);
@@ -1000,13 +996,6 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);
   EXPECT_EQ(paper["elements"], 4550);
   EXPECT_FALSE(paper.contains("spans_per_element"));
-  const Json parts = Json::parse(run("bench film-1e3 --parts 4 --steps 2 --json").out);
-  ASSERT_EQ(parts["cuts"].size(), 3U);
-  EXPECT_EQ(parts["cuts"][0]["copies"], 0);
-  for (const Json& cut : parts["cuts"])
-    EXPECT_NEAR(cut["own"].get<double>() * cut["parts"].get<double>(), parts["elements"].get<double>(), 1e-6);
-  EXPECT_GT(parts["cuts"][2]["copies"], 10);
-  EXPECT_GT(parts["ns_per_own_element"], 1);
   EXPECT_EQ(run("bench film-1e9").code, 2);
   EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/spindle-67nm.toml").code, 2);
