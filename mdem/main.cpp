@@ -74,12 +74,12 @@ struct Verbs {
   RestArguments rest;
   ModesArguments modes;
   GatherArguments gather;
-  PlanArguments plan;
   ExportArguments to_lammps;
   ImportArguments from_lammps;
   AtomsArguments atoms;
   CoarsenArguments coarsen;
-  std::string check_scene, help_topic, cited_run;
+  CheckArguments check;
+  std::string help_topic, cited_run;
   int code = 0;
 };
 
@@ -142,9 +142,16 @@ void add_check(CLI::App& app, Verbs& v) {
   CLI::App* c = app.add_subcommand(
       "check",
       "Read a scene, say what it would do and how long it would take; or judge a run by the [[expect]] "
-      "tables of its scene");
-  c->add_option("scene", v.check_scene, "Scene file (TOML), or the directory of a finished run")->required();
-  c->callback([&v] { v.code = check_command(v.check_scene); });
+      "tables of its scene, or by a finer model");
+  c->add_option("scene", v.check.path, "Scene file (TOML), or the directory of a finished run")->required();
+  c->add_flag("--accuracy", v.check.accuracy,
+              "Of a run: go on for a stretch with its model and with a finer one, and say how far it is off");
+  c->add_option("--stretch", v.check.stretch, "With --accuracy: ps that both models go on")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive()));
+  c->add_option("--against", v.check.against,
+                "With --accuracy: directory of a run of the same scene by a finer model, in place of the stretch");
+  c->callback([&v] { v.code = check_command(v.check); });
 }
 
 void add_run(CLI::App& app, Verbs& v) {
@@ -172,18 +179,20 @@ void add_run(CLI::App& app, Verbs& v) {
 }
 
 void add_errors(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand(
-      "errors",
-      "Errors of a finished run's results that follow from those of its sets, files and typed numbers: repeats it");
+  CLI::App* c = app.add_subcommand("errors",
+                                   "Error bars of a finished run, from the standard errors of its parameter sets, "
+                                   "friction files and scene numbers; it "
+                                   "repeats the run");
   c->add_option("dir", v.errors.dir, "Directory of the run")->required();
-  CLI::Option* numerics = c->add_flag(
-      "--numerics", v.errors.numerics,
-      "The whole error: also by elements, time step and rate, each halved, and by other starts and random numbers");
-  c->add_option("--mean", v.errors.mean_ps, "Of means over the last so many ps, in the place of the last row")
+  CLI::Option* numerics = c->add_flag("--numerics", v.errors.numerics,
+                                      "Add the numerical errors: repeat the run with half the element length, half "
+                                      "the time step and half the rate, and "
+                                      "from other random starts");
+  c->add_option("--mean", v.errors.mean_ps, "Errors of means over the last so many ps instead of the last row")
       ->check(number_within(Bounds::positive()))
       ->needs(numerics);
   c->add_option("-j,--jobs", v.errors.jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
-  c->add_flag("--again", v.errors.again, "Repeat also what is finished");
+  c->add_flag("--again", v.errors.again, "Repeat finished runs as well");
   c->add_flag("--json", v.errors.json, "JSON");
   c->add_flag("--quiet", v.errors.quiet, "No progress lines");
   c->callback([&v] {
@@ -222,6 +231,10 @@ void add_compare(CLI::App& app, Verbs& v) {
               "Runs that twist a rope: largest torque, its angle, first break and stored energy, against the value "
               "of --x at that torque")
       ->excludes("--tensile");
+  c->add_option("--yarn-diameter-um", v.compare.yarn_diameter_um,
+                "With --tensile: turns per metre of a yarn so thick, with the twist angle of each run")
+      ->check(number_within(Bounds::positive()))
+      ->needs("--tensile");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
   c->add_option("--svg", v.compare.svg, "Runs: write the chart of the first column to this file instead");
   c->add_option("--csv", v.compare.csv, "Runs: write the curves, and their standard errors, to this file instead");
@@ -249,9 +262,7 @@ void add_resume(CLI::App& app, Verbs& v) {
 }
 
 void add_observe(CLI::App& app, Verbs& v) {
-  CLI::App* c = app.add_subcommand(
-      "observe",
-      "Measure the stored frames of a run: twist, packing, shape; a planned run also against a finer model");
+  CLI::App* c = app.add_subcommand("observe", "Measure the stored frames of a run: twist, packing, shape");
   c->add_option("dir", v.observe.dir, "Directory of the run");
   c->add_flag("--list", v.observe.list, "List the observables: name, unit, meaning (Markdown)");
   c->add_option("--neighbour-radius", v.observe.neighbour_radius,
@@ -320,7 +331,7 @@ void add_view(CLI::App& app, Verbs& v) {
       ->capture_default_str()
       ->check(whole_number(1, 100000));
   c->add_option("--megabytes", v.view.megabytes,
-                "The page is not longer: numbers are rounded, then frames left out")
+                "Largest size of the page: numbers are rounded to keep it, then frames are left out")
       ->capture_default_str()
       ->check(number_within(Bounds::range(1.0, 2000.0)));
   CLI::Option* movie =
@@ -355,9 +366,10 @@ void add_atoms(CLI::App& app, Verbs& v) {
       c->add_option("--frame", v.atoms.frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
   CLI::Option* at =
       c->add_option("--at", v.atoms.at,
-                    "A limit that the run has passed: the place where it did so first, in the last frame "
-                    "before that")
+                    "A limit that the run has passed: the place where it did so first. The run is stepped again to "
+                    "that moment where that takes less than a minute; else the last frame before it is taken")
           ->excludes(frame);
+  c->add_flag("--step-again", v.atoms.step_again, "With --at: step the run again, however long it takes")->needs(at);
   c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
       ->capture_default_str()
       ->check(number_within(Bounds::range(1, 1000)))
@@ -370,13 +382,13 @@ void add_atoms(CLI::App& app, Verbs& v) {
   c->add_option("--potential", v.atoms.potential,
                 "tersoff, airebo, rebo, lcbop, or a file of pair_style and pair_coeff lines [default: the set's]");
   c->add_option("--parameters", v.atoms.state.parameters,
-                "Of a state file: its parameter set; several, separated by commas, for tube types")
+                "For a state file: its parameter set; several, separated by commas, for tube types")
       ->delimiter(',');
   c->add_option("--tube-types", v.atoms.state.tube_types,
-                "Of a state file: which of the sets each tube is [default: all the first]")
+                "For a state file: number of the parameter set of each tube, from 0 [default: all 0]")
       ->delimiter(',');
   c->add_option("--element-length-nm", v.atoms.state.element_length,
-                "Of a state file: length of an element [default: what it says, else the set's]")
+                "For a state file: length of an element [default: what the file says, else the set's]")
       ->check(number_within(Bounds::range(0.05, 50)));
   c->add_flag("--json", v.atoms.json, "With --relax: JSON");
   c->add_flag("--force", v.atoms.force, "Replace existing files");
@@ -405,7 +417,7 @@ void add_coarsen(CLI::App& app, Verbs& v) {
       ->check(number_within(Bounds::positive(1e6)));
   c->add_flag("--json", v.coarsen.json, "What was found, as JSON");
   c->add_flag("--force", v.coarsen.force, "Replace an earlier run in --out, or the file");
-  c->add_flag("--quiet", v.coarsen.quiet, "Say nothing of each tube");
+  c->add_flag("--quiet", v.coarsen.quiet, "Do not list the tubes");
   c->callback([&v] { v.code = coarsen_command(v.coarsen); });
 }
 
@@ -418,7 +430,7 @@ void add_energy(CLI::App& app, Verbs& v) {
       ->delimiter(',')
       ->required();
   c->add_option("--tube-types", v.energy.options.tube_types,
-                "Which of the sets each tube is: 0,1,1 [default: all the first]")
+                "Number of the parameter set of each tube, from 0: 0,1,1 [default: all 0]")
       ->delimiter(',');
   c->add_option("--law", v.energy.options.law,
                 "Contact law: line, paper or none [default: line where the set has it]");
@@ -429,8 +441,8 @@ void add_energy(CLI::App& app, Verbs& v) {
                 "Length of an element [default: what the state file says, else the set's]")
       ->check(number_within(Bounds::range(0.05, 50)));
   c->add_option("--free-length-nm", v.energy.options.free_length,
-                "Length of the tubes between what holds them in a scene, by which twisted tubes collapse [default: "
-                "the whole length]")
+                "Free length of the tubes between their clamps; long tubes collapse at less twist than short ones "
+                "[default: the whole length]")
       ->check(number_within(Bounds::positive()));
   c->add_option("--exclude-along-tube-nm", v.energy.options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
@@ -483,8 +495,9 @@ void add_threshold(CLI::App& app, Verbs& v) {
   c->add_option("--snakemake", v.threshold.snakemake, "Only write a Snakemake file to this file");
   c->add_flag("--theory", v.threshold.theory,
               "Run nothing: tables and page of theory and of the runs that are there");
-  c->add_flag("--static", v.threshold.by_statics,
-              "Run nothing: between which values the frictionless state of rest ceases to be stable");
+  c->add_flag(
+      "--static", v.threshold.by_statics,
+      "Run nothing: find, by statics, between which values the equilibrium without friction loses its stability");
   c->add_flag("--force", v.threshold.force, "Replace runs of another scene");
   c->add_flag("--quiet", v.threshold.quiet, "No progress");
   c->callback([&v] { v.code = threshold_command(v.threshold); });
@@ -499,12 +512,13 @@ void add_rest(CLI::App& app, Verbs& v) {
                 "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
       ->check(CLI::NonNegativeNumber);
   c->add_option("--tolerance", v.rest.tolerance,
-                "Both sides count as at rest, and as equal, within this part of the twist")
+                "Relative tolerance of the twist: of a side, to be at rest, and of both, to agree")
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   c->add_option("-j,--jobs", v.rest.jobs, "Runs at a time [default: one for each core]")->check(thread_range());
-  c->add_flag("--static", v.rest.by_statics,
-              "By Newton's method, without runs: the frictionless states of rest, and whether they are stable");
+  c->add_flag(
+      "--static", v.rest.by_statics,
+      "By Newton's method, without runs: the equilibrium states without friction, and whether they are stable");
   c->add_flag("--force", v.rest.force, "Replace runs of another scene");
   c->add_flag("--json", v.rest.json, "JSON");
   c->add_flag("--quiet", v.rest.quiet, "No progress");
@@ -513,7 +527,7 @@ void add_rest(CLI::App& app, Verbs& v) {
 
 void add_modes(CLI::App& app, Verbs& v) {
   CLI::App* c =
-      app.add_subcommand("modes", "Which motions of a state at rest grow, at what rate, and what they move");
+      app.add_subcommand("modes", "Small motions that grow out of a state at rest: their rates and what they move");
   c->add_option("path", v.modes.path,
                 "Directory of a run, whose newest checkpoint counts, or a scene (TOML) at its start")
       ->required()
@@ -525,11 +539,11 @@ void add_modes(CLI::App& app, Verbs& v) {
                 "Find the motions with growth rates nearest to this one (1/ns); choose it above the largest rate")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e5));
-  c->add_flag("--anyway", v.modes.anyway, "Also for a state that does not rest: its motions as if it stood still");
+  c->add_flag("--anyway", v.modes.anyway, "Also for a state that is not at rest, as if it stood still");
   c->add_option("--csv", v.modes.csv, "Write the table to this file");
   c->add_option("--frame", v.modes.frame,
                 "Write the state moved along the leading mode to this file (CSV), from which a scene can start");
-  c->add_option("--amplitude", v.modes.amplitude, "How far its farthest element is moved, nm")
+  c->add_option("--amplitude", v.modes.amplitude, "Largest displacement of an element in that state, nm")
       ->capture_default_str()
       ->check(CLI::Range(1e-9, 1.0));
   c->add_option("--threads", v.modes.threads, "Threads [default: all cores]")->check(thread_range());
@@ -552,42 +566,19 @@ void add_gather(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = gather_command(v.gather); });
 }
 
-void add_plan(CLI::App& app, Verbs& v) {
-  CLI::App* c =
-      app.add_subcommand("plan", "Choose the cheapest model that holds an error, by short pilots of the scene");
-  c->add_option("scene", v.plan.scene, "Scene file (TOML)");
-  c->add_option("--error", v.plan.error, "Largest error of each observable: 2% or 0.02")->capture_default_str();
-  c->add_option("--observables", v.plan.observables,
-                "Which ones: energy and columns of log.csv [default: energies, twist angle, torque, tension]")
-      ->delimiter(',');
-  c->add_flag("--end-state", v.plan.end_state, "Only the end is asked for, not the motion");
-  c->add_option(
-       "--pilot-seconds", v.plan.pilot_seconds,
-       "Processor time for all pilots, about; with more they need not be smaller than the scene [default: first a "
-       "look at the default model, of a tenth of the runs' time or 5 s; then as much, or a minute of each core]")
-      ->check(number_within(Bounds::positive()));
-  c->add_option("--runs", v.plan.runs, "Number of runs that the plan is for: a sweep is worth more pilots")
-      ->capture_default_str()
-      ->check(whole_number(1, 1000000));
-  c->add_option("-o", v.plan.out, "File to write, never one that exists [default: SCENE-planned.toml]");
-  c->add_option("-j,--jobs", v.plan.jobs, "Pilots at a time [default: one for each core]")
-      ->check(whole_number(1, 4096));
-  c->add_option("--check", v.plan.check, "Directory of a run: compare its end with a finer model instead");
-  c->add_option("--against", v.plan.against, "With --check: directory of a run of the same scene by a finer model");
-  c->add_option("--finest", v.plan.finest,
-                "Also write the scene with the finest model that pilots took, to this file");
-  c->add_option("--stretch", v.plan.stretch, "With --check: ps that both models go on")
-      ->capture_default_str()
-      ->check(number_within(Bounds::positive()));
-  c->callback([&v] {
-    wait_briefly(v.argv, threads_beside(v.plan.jobs));
-    v.code = plan_command(v.plan);
+// A verb of earlier versions.
+void add_plan(CLI::App& app) {
+  CLI::App* c = app.add_subcommand("plan", "")->group("");
+  c->allow_extras();
+  c->callback([] {
+    throw InputError({"", 0, "plan"}, "is no verb any more: the default model is what it chose in most scenes",
+                     "run the scene, and hold the run against a finer model: ropewalk check RUN --accuracy");
   });
 }
 
 void add_export(CLI::App& app, Verbs& v) {
   CLI::App* c =
-      app.add_subcommand("export", "Write a scene, or a run that stands somewhere, for lmp-ropewalk (MPI)");
+      app.add_subcommand("export", "Write a scene, or the present state of a run, for lmp-ropewalk (MPI)");
   c->add_option("scene", v.to_lammps.scene, "Scene file (TOML), or the directory of a run")->required();
   c->add_option("--lammps", v.to_lammps.lammps, "Directory to make: data, input and a README that says how to run")
       ->required();
@@ -596,9 +587,11 @@ void add_export(CLI::App& app, Verbs& v) {
 }
 
 void add_import(CLI::App& app, Verbs& v) {
-  CLI::App* c =
-      app.add_subcommand("import", "Take what LAMMPS has done into the run, to observe, report or resume");
+  CLI::App* c = app.add_subcommand(
+      "import", "Take the results of lmp-ropewalk into the run, to observe, report or resume it");
   c->add_option("dir", v.from_lammps.dir, "Directory of the export, in which lmp-ropewalk has run")->required();
+  c->add_flag("--accept-changes", v.from_lammps.accept_changes,
+              "Take the states although in.rope, or what it reads, is not what was exported");
   c->callback([&v] { v.code = import_command(v.from_lammps); });
 }
 
@@ -617,24 +610,9 @@ void add_bench(CLI::App& app, Verbs& v) {
       ->check(thread_range());
   add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
   add_device(c, v.bench.device, "none");
-  CLI::Option* lammps = c->add_option("--lammps", v.bench.lammps,
-                                      "Time lmp-ropewalk on so many ranks against as many threads, by turns")
-                            ->check(thread_range());
-  c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
-  for (const char* other : {"--after", "--threads", "--instructions", "--device"})
-    lammps->excludes(c->get_option(other));
-  CLI::Option* parts =
-      c->add_option(
-           "--parts", v.bench.parts,
-           "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
-           "forces of each part alone")
-          ->check(whole_number(1, 4096));
-  for (const char* other : {"--after", "--threads", "--instructions", "--device", "--lammps"})
-    parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] {
-    wait_briefly(v.argv,
-                 std::max(v.bench.lammps, *std::max_element(v.bench.threads.begin(), v.bench.threads.end())));
+    wait_briefly(v.argv, *std::max_element(v.bench.threads.begin(), v.bench.threads.end()));
     v.code = bench_command(v.bench);
   });
 }
@@ -757,7 +735,7 @@ int main(int argc, char** argv) {
   add_modes(app, verbs);
   add_gather(app, verbs);
   add_cite(app, verbs);
-  add_plan(app, verbs);
+  add_plan(app);
   add_export(app, verbs);
   add_import(app, verbs);
   add_atoms(app, verbs);

@@ -91,7 +91,7 @@ PulledCell pull_cell(RunContext& run, const RelaxedTube& tube) {
                length = static_cast<double>(hexagons) * tube.shape.length_per_hexagon;
   TubeShape shape = tube.shape;
   shape.twist = angle / length;
-  write_data(run, "pull.data", data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, length));
+  write_data(run, "pull.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length));
   const std::string relaxed =
       "minimize 0.0 1e-5 1000 10000\n"
       "print \"$(pe:%.15g)\" append pull.dat screen no\n"
@@ -160,7 +160,7 @@ PullFit fit_pull(std::vector<AtomisticRow>& table, const Anharmonic& law, double
   std::vector<AtomisticRow> rows;
   for (const AtomisticRow& row : table)
     if (row.kind == "pull") rows.push_back(row);
-  constexpr double least = 0.02;  // of strain beyond the window
+  constexpr double least = 0.02;  // smallest strain beyond the window
   if (rows.size() < stencil + 1 || rows.back().strain < law.max_strain + least) return {};
   const double twist = rows.front().twist - natural_twist;
   PullFit out;

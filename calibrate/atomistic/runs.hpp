@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "atomistic/stiffness.hpp"
+#include "atoms/atom_writer.hpp"
 #include "atoms/lattice.hpp"
 
 namespace ropewalk::calibrate {
-
-inline constexpr double angstrom = 0.1;  // nm: LAMMPS's metal units
 
 // The reference tube for strains, twists and energies.
 struct RelaxedTube {
@@ -42,8 +41,8 @@ RelaxedTube relax_tube(RunContext& run);
 
 // Cells at all pairs of these strains and shears.
 struct CellGrid {
-  std::string name;                    // of the LAMMPS run and of the rows
-  std::vector<double> strains;         // in rising order
+  std::string name;                    // name of the LAMMPS run and of its rows
+  std::vector<double> strains;         // ascending
   double largest_shear = 0;            // radius times twist
   std::vector<double> parts_of_shear;  // the nearest twists that the lattice has
 };
@@ -93,7 +92,6 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
 std::string uniform_cell_commands(const Potential& potential, const std::string& data);
 // The period of a cell with no twist, or with very little where the period of the tube is long.
 LatticeVector untwisted_cell(Chirality c, double min_length);
-std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape);
 std::string header_commands(const std::string& boundary, double skin);
 // The atoms of each tube (nm) as a type of their own, in a box about the axis.
 std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,

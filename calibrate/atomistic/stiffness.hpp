@@ -40,7 +40,7 @@ struct Measured {
 
 // The calibration refuses chiralities beyond these limits before LAMMPS starts.
 inline constexpr double smallest_diameter = 0.3;  // nm: below it atoms across the tube are within reach of bonds
-inline constexpr int max_atoms = 20000;           // of a cell: a minute each
+inline constexpr int max_atoms = 20000;           // atoms of a cell; larger cells take over a minute each
 
 // One relaxed configuration, a row of the table NAME-stiffness.csv.
 struct AtomisticRow {
@@ -120,6 +120,7 @@ struct Stiffness {
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
+  double sublattice_turn = 0, sublattice_rise = 0;  // rad and nm, of the second one in the relaxed tube
   double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
   Measured stretch_cubic;  // eV/nm, of e^3

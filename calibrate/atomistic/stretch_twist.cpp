@@ -117,12 +117,6 @@ std::string uniform_cell_commands(const Potential& potential, const std::string&
   return text;
 }
 
-std::vector<Vector3> atoms_of(Chirality c, long hexagons, const TubeShape& shape) {
-  std::vector<Vector3> atoms;
-  for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(place(c, site, shape));
-  return atoms;
-}
-
 LatticeVector untwisted_cell(Chirality c, double min_length) {
   const LatticeVector t = translation_vector(c);
   const double length = translational_period(c);
@@ -140,7 +134,7 @@ RelaxedTube relax_tube(RunContext& run) {
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   shape.twist = -2 * pi * period_turns(c, period) / length;
   const std::vector<Site> sites = strip_sites(c, hexagons);
-  write_data(run, "relax.data", data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, length));
+  write_data(run, "relax.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length));
 
   const std::string values = report("relax", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
   run_stage(run, "relax",
@@ -215,7 +209,7 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
         shape.length_per_hexagon *= 1 + strain;
         shape.radius *= 1 - start.contraction * strain;
         shape.twist = angle / cell.length;
-        write_data(run, data, data_file({atoms_of(c, hexagons, shape)}, shape.radius + 0.5, 0, cell.length));
+        write_data(run, data, data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, cell.length));
         input += uniform_cell_commands(run.potential, data);
       } else {
         const double step = cell.length / cells.back().length - 1;
@@ -277,7 +271,7 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
     TubeShape shape = tube.shape;
     shape.twist = row.twist;
     const std::string data = fmt::format("collapse-{}.data", rows.size());
-    write_data(run, data, data_file({atoms_of(c, cell.hexagons, shape)}, radius + 1, 0, row.length));
+    write_data(run, data, data_file({tube_atoms(c, shape, cell.hexagons)}, radius + 1, 0, row.length));
     input += cell_commands(run.potential, data) +
              fmt::format("displace_atoms all random 0.02 0.02 0.02 {} units box\nminimize 0.0 2e-4 6000 60000\n",
                          3001 + rows.size());

@@ -40,7 +40,7 @@ bool two_numbers(const std::string& text, T& a, T& b) {
 // The numbers of a calibration, for a person and for a script.
 struct Number {
   const char *words, *key, *unit;
-  Measured value;           // in the unit
+  Measured value;           // value in the unit
   const char* in_set = "";  // its key there, where potentials differ in it
 };
 
@@ -252,8 +252,9 @@ AtomLaw parse_atom_law(const std::string& lj, double cutoff) {
   if (!(cutoff >= 0))
     throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff), "must be positive, or 0 for none");
   if (law.cutoff < 2 * law.sigma)
-    throw InputError({"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff),
-                     fmt::format("must be at least 2 sigma, {:.3g} nm: the attraction is lost", 2 * law.sigma));
+    throw InputError(
+        {"", 0, "--lj-cutoff"}, fmt::format("is {} nm", cutoff),
+        fmt::format("must be at least 2 sigma, {:.3g} nm: a shorter cutoff loses the attraction", 2 * law.sigma));
   return law;
 }
 

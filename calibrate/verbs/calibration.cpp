@@ -180,6 +180,8 @@ void add_atomistic(const Calibration& c, Quantities& q) {
   q.calibrated("coupling", scaled(s.coupling, units::eV_in_nN_nm), "nN nm", "of stretch and twist");
   q.calibrated("poisson", s.poisson, "1", "-d ln r / d strain");
   q.calibrated("energy_per_atom", {s.energy_per_atom, 0}, "eV", "of the relaxed tube");
+  q.calibrated("sublattice_turn", {s.sublattice_turn, 0}, "rad", "of the second sublattice against the first");
+  q.calibrated("sublattice_rise", {s.sublattice_rise, 0}, "nm", "likewise");
 }
 
 void add_validity(const Calibration& c, Quantities& q) {

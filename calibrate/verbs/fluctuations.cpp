@@ -107,12 +107,12 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
   fmt::print("\n");
   if (!f.local)
     fmt::print(
-        "note: the windows do not agree: the bonds are not independent, or the time is too short. The row \"rod\" "
-        "leaves out what ends of windows add\n");
+        "note: short and long pieces of the tubes give different stiffnesses: neighbouring bonds are correlated, "
+        "or the time is too short. The row \"rod\" is free of what the ends of the pieces add\n");
   if (f.static_part > much_static)
     fmt::print(
-        "note: {:.0f} % of the variance of the bonds stays over all of the time: the tubes are bent or twisted at "
-        "rest, or the time is too short, and stiffnesses are too small by that\n",
+        "note: {:.0f} % of the variance of the bonds does not fluctuate in this time: either the tubes are bent or "
+        "twisted without any heat, or the time is too short. The stiffnesses are too small by as much\n",
         100 * f.static_part);
 }
 

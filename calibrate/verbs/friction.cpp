@@ -35,11 +35,8 @@ struct Tube {
   // About as long (nm), its middle at z = 0.
   std::vector<Vector3> atoms(double length) const {
     const long hexagons = hexagons_in(set.chirality, shape, length);
-    std::vector<Vector3> out;
-    for (const Site& site : strip_sites(set.chirality, hexagons))
-      out.push_back(place(set.chirality, site, shape) -
-                    Vector3(0, 0, 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon));
-    return out;
+    return tube_atoms(set.chirality, shape, hexagons, 0,
+                      -0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon);
   }
 };
 
@@ -94,7 +91,7 @@ Measured product(const Measured& x, const Measured& factor) {
   return {x.value * factor.value, std::hypot(x.standard_error * factor.value, x.value * factor.standard_error)};
 }
 
-// Of the corrugation along the axis, nm.
+// Period of the corrugation along the axis, nm.
 double corrugation(const Tube& t) {
   const double period = translational_period(t.set.chirality);
   return period < 0.5 ? period : graphene_lattice_constant;

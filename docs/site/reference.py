@@ -233,7 +233,6 @@ folders = {
     "io": "files",
     "run": "the loop around a simulation, and its directory",
     "report": "pages and pictures",
-    "plan": "the cheapest model for an error",
     "campaign": "many runs",
     "cli": "command lines",
 }

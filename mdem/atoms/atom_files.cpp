@@ -28,15 +28,6 @@ constexpr std::int64_t most_atoms = 200000000;
 
 enum class Format { data, dump, xyz };
 
-std::string_view next_word(std::string_view& text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
-  text.remove_prefix(begin);
-  const std::size_t end = std::min(text.find_first_of(" \t\r"), text.size());
-  const std::string_view word = text.substr(0, end);
-  text.remove_prefix(end);
-  return word;
-}
-
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
   for (std::string_view word = next_word(text); !word.empty(); word = next_word(text)) words.emplace_back(word);
@@ -55,10 +46,7 @@ bool is_carbon_mass(double mass) { return std::fabs(mass - units::carbon_atomic_
 // Lines of a file with their numbers.
 class Lines {
  public:
-  explicit Lines(const std::string& path) : path_(path), file_(path) {
-    refuse_devices(path);
-    if (!file_) throw file_error(path, "cannot be opened", errno);
-  }
+  explicit Lines(const std::string& path) : path_(path), file_(opened_stream(path)) {}
   bool next() {
     if (!std::getline(file_, line_)) {
       if (file_.bad()) throw file_error(path_, "cannot be read", EIO);

@@ -20,22 +20,31 @@ struct AtomFrame {
   std::int64_t step = 0;
 };
 
+// Frames of one simulation. The atoms of every frame are in the order of the first.
+class AtomSource {
+ public:
+  virtual ~AtomSource() = default;
+  // False at the end. Throws InputError where something is wrong.
+  virtual bool next(AtomFrame& frame) = 0;
+  // Where the frame just read comes from: a file, or a name for messages.
+  virtual const std::string& file() const = 0;
+  virtual bool cut_off() const { return false; }     // the last frame was, and is left out
+  virtual bool states_time() const { return true; }  // false: times are steps times the time step that was given
+};
+
 // Frames of several files, one file after another. A data file beside dumps gives the species of their types and is
-// no frame itself. The atoms of every frame are in the order of the first: dumps are sorted by their id, XYZ files
-// keep theirs. What carbon is, the files say: by the element, or by the mass of a type; where there is one type and
-// no mass, it is carbon.
-class AtomFiles {
+// no frame itself. Dumps are sorted by their id, XYZ files keep their order. What carbon is, the files say: by the
+// element, or by the mass of a type; where there is one type and no mass, it is carbon.
+class AtomFiles : public AtomSource {
  public:
   // `time_step_fs`: of the steps of a dump that states no time.
   AtomFiles(std::vector<std::string> paths, double time_step_fs);
-  ~AtomFiles();
-  // False at the end. A last frame that is cut off is left out, and told by cut_off(). Throws InputError with the
-  // line of what is wrong.
-  bool next(AtomFrame& frame);
-  // The file of the frame just read.
-  const std::string& file() const;
-  bool cut_off() const;
-  bool states_time() const;  // false: times are steps times the time step that was given
+  ~AtomFiles() override;
+  // Errors name the line of what is wrong.
+  bool next(AtomFrame& frame) override;
+  const std::string& file() const override;
+  bool cut_off() const override;
+  bool states_time() const override;
 
  private:
   struct Impl;

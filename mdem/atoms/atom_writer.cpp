@@ -47,6 +47,13 @@ AtomFormat atom_format_of(const std::string& path) {
 std::vector<AtomRange> write_atoms(const std::string& path, AtomFormat format, const AtomsOfElements& atoms,
                                    const std::string& title, double time_ps) {
   Draft file(path);
+  std::vector<AtomRange> ranges = write_atoms(file, format, atoms, title, time_ps);
+  file.replace();
+  return ranges;
+}
+
+std::vector<AtomRange> write_atoms(Draft& file, AtomFormat format, const AtomsOfElements& atoms,
+                                   const std::string& title, double time_ps) {
   fmt::memory_buffer out;
   append_head(out, format, atoms, title, time_ps);
   std::vector<AtomRange> ranges;
@@ -69,7 +76,6 @@ std::vector<AtomRange> write_atoms(const std::string& path, AtomFormat format, c
   });
   file.write({out.data(), out.size()});
   file.sync();
-  file.replace();
   return ranges;
 }
 

@@ -22,8 +22,13 @@ struct AtomRange {
   long first = 0, last = 0;
 };
 
+class Draft;
+
 // `title`: one line. Returns which atoms are of which element. Throws InputError where the file cannot be written.
 std::vector<AtomRange> write_atoms(const std::string& path, AtomFormat format, const AtomsOfElements& atoms,
+                                   const std::string& title, double time_ps);
+// The same into a draft, which is then on the disk.
+std::vector<AtomRange> write_atoms(Draft& file, AtomFormat format, const AtomsOfElements& atoms,
                                    const std::string& title, double time_ps);
 
 }  // namespace ropewalk

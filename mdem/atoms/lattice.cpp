@@ -1,5 +1,6 @@
 #include "atoms/lattice.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -142,6 +143,14 @@ Vector3 place(Chirality c, const Site& site, const TubeShape& shape) {
   return {shape.radius * std::cos(at.phi), shape.radius * std::sin(at.phi), at.z};
 }
 
+std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn, double bottom) {
+  const Eigen::AngleAxisd rotation(turn, Vector3::UnitZ());
+  std::vector<Vector3> atoms;
+  for (const Site& site : strip_sites(c, hexagons))
+    atoms.push_back(rotation * place(c, site, shape) + Vector3(0, 0, bottom));
+  return atoms;
+}
+
 TubeCell tube_cell(Chirality c, LatticeVector period, double a) {
   check(c);
   const long hexagons = cell_hexagons(c, period);
@@ -153,7 +162,7 @@ TubeCell tube_cell(Chirality c, LatticeVector period, double a) {
   cell.radius = shape.radius;
   cell.length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   cell.twist = shape.twist = -2.0 * pi * period_turns(c, period) / cell.length;
-  for (const Site& site : strip_sites(c, hexagons)) cell.atoms.push_back(place(c, site, shape));
+  cell.atoms = tube_atoms(c, shape, hexagons);
   return cell;
 }
 

@@ -97,6 +97,10 @@ struct Polar {
 Polar polar(Chirality c, const Site& site, const TubeShape& shape);
 Vector3 place(Chirality c, const Site& site, const TubeShape& shape);
 
+// The atoms of a piece of a tube: those of strip_sites(), turned about the axis (rad), from z = `bottom` (nm) upwards.
+std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0,
+                                double bottom = 0);
+
 struct TubeCell {
   std::vector<Vector3> atoms;  // nm, on the cylinder of `radius`, axis z, 0 <= z < length
   double radius = 0;           // nm

@@ -23,33 +23,6 @@ std::vector<std::string> command_words(const std::string& line) {
 // one is made once for each part, so that it does not count as contact.
 constexpr double reaches_next_tube = 0.28;  // nm
 
-std::string pair_text(const AtomForces& forces, std::size_t parts) {
-  const Potential& potential = forces.potential;
-  std::string text;
-  if (parts == 1) {
-    for (const std::string& command : potential.commands) text += command + "\n";
-    return text;
-  }
-  const std::vector<std::string> style = command_words(potential.commands.at(0));
-  const std::vector<std::string> coeff = command_words(potential.commands.at(1));
-  std::string own = style[1];
-  for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
-  const std::size_t instances = potential.cutoff < reaches_next_tube ? 1 : parts;
-  text = "pair_style hybrid/overlay";
-  for (std::size_t p = 0; p < instances; ++p) text += " " + own;
-  text += fmt::format(" lj/cut {:.6f}\n", forces.cutoff / angstrom);
-  for (std::size_t p = 1; p <= instances; ++p) {
-    text +=
-        fmt::format("pair_coeff * * {}", style[1]) + (instances > 1 ? fmt::format(" {}", p) : "") + " " + coeff[3];
-    for (std::size_t k = 1; k <= parts; ++k) text += instances == 1 || k == p ? " " + coeff[4] : " NULL";
-    text += "\n";
-  }
-  for (std::size_t p = 1; p < parts; ++p)
-    text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", p, p + 1, parts, forces.epsilon,
-                        forces.sigma / angstrom);
-  return text;
-}
-
 void refuse_other_lines(const Potential& potential, const std::string& name) {
   if (potential.commands.size() == 2 && command_words(potential.commands[0]).size() >= 2 &&
       command_words(potential.commands[0])[0] == "pair_style") {
@@ -81,6 +54,33 @@ std::vector<double> part_energies(const std::string& path, std::size_t parts) {
 }
 
 }  // namespace
+
+std::string pair_lines(const AtomForces& forces, std::size_t parts) {
+  const Potential& potential = forces.potential;
+  std::string text;
+  if (parts == 1) {
+    for (const std::string& command : potential.commands) text += command + "\n";
+    return text;
+  }
+  const std::vector<std::string> style = command_words(potential.commands.at(0));
+  const std::vector<std::string> coeff = command_words(potential.commands.at(1));
+  std::string own = style[1];
+  for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
+  const std::size_t instances = potential.cutoff < reaches_next_tube ? 1 : parts;
+  text = "pair_style hybrid/overlay";
+  for (std::size_t p = 0; p < instances; ++p) text += " " + own;
+  text += fmt::format(" lj/cut {:.6f}\n", forces.cutoff / angstrom);
+  for (std::size_t p = 1; p <= instances; ++p) {
+    text +=
+        fmt::format("pair_coeff * * {}", style[1]) + (instances > 1 ? fmt::format(" {}", p) : "") + " " + coeff[3];
+    for (std::size_t k = 1; k <= parts; ++k) text += instances == 1 || k == p ? " " + coeff[4] : " NULL";
+    text += "\n";
+  }
+  for (std::size_t p = 1; p < parts; ++p)
+    text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", p, p + 1, parts, forces.epsilon,
+                        forces.sigma / angstrom);
+  return text;
+}
 
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential) {
   AtomForces out;
@@ -122,7 +122,7 @@ std::string relax_input(const std::string& stem, const AtomForces& forces, std::
       "# Minimises the energy of these atoms, with the end elements held where they are.\n"
       "units metal\natom_style molecular\natom_modify map array sort 0 0.0\nboundary s s s\nneighbor 0.5 bin\n"
       "neigh_modify delay 0 every 1 check yes\n";
-  text += fmt::format("read_data {}\n", lammps_quoted(stem + ".data")) + pair_text(forces, parts);
+  text += fmt::format("read_data {}\n", lammps_quoted(stem + ".data")) + pair_lines(forces, parts);
   text += "group held id";
   for (std::size_t k = 0; k < held.size(); ++k) {
     std::size_t end = k;

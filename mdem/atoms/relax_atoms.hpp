@@ -21,6 +21,9 @@ struct AtomForces {
 // empty: that of the sets. Throws InputError where they name none, or several.
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential);
 
+// The pair_style and pair_coeff lines for tubes whose atoms are of the types 1 .. parts.
+std::string pair_lines(const AtomForces& forces, std::size_t parts);
+
 // LAMMPS input that reads STEM.data, in which each part of a tube is a type. It writes STEM-relaxed.data, and the
 // energies of the free atoms of all parts, before and after, to STEM-before.txt and STEM-after.txt. `held`: ranges
 // of atoms that stay where they are.

@@ -33,6 +33,8 @@ TubeReference reference_of(const ParameterSet& set) {
   out.shape.radius = set.radius;
   out.shape.length_per_hexagon = 2 / set.atoms_per_length;
   out.shape.twist = number_of(set, "atomistic.natural_twist");
+  out.shape.arc_shift = number_of(set, "atomistic.sublattice_turn");
+  out.shape.height_shift = number_of(set, "atomistic.sublattice_rise");
   out.poisson = number_of(set, "atomistic.poisson");
   return out;
 }

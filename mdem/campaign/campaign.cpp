@@ -238,7 +238,7 @@ std::string gathered_csv(const CampaignDirectory& dir, const Sweep& sweep, const
     }
     if (options.mean_ps > 0 && stands_still(log))
       throw InputError({run.log(), 0, "--mean"},
-                       "is the log of a relaxation: its rows are no times to average over",
+                       "is the log of a relaxation: its rows are steps, which have no mean over time",
                        "leave --mean out, and the table has their ends");
     text += begin;
     if (log.empty())

@@ -89,13 +89,12 @@ class Planning {
          fmt::format("element_length_nm = {:.3g}", half_error * length)});
     if (splitting_of(scene_) == Splitting::between)
       plan_.what.remarks.push_back(
-          "Shorter elements: what is held stays in its place, and behind it tubes end a quarter of an element "
-          "earlier, "
-          "which counts in energies of the whole");
+          "Shorter elements: clamps stay in their places, and the tubes end a quarter of an element nearer to "
+          "them. Energies of the whole rope contain this difference");
     if (is_warm(scene_))
       plan_.what.remarks.push_back(
-          "Shorter elements: a warm scene has more heat with more of them, and its energies are not those of one "
-          "scene");
+          "Shorter elements: a warm scene then has more elements and so more heat, and its energies cannot be "
+          "compared");
   }
 
   std::string without_frames(const std::string& text) const {

@@ -185,9 +185,8 @@ RestVerdict rest_verdict(const std::array<RestSide, 2>& s, double tolerance) {
       break;
     case Kind::several:
       out.words = fmt::format(
-          "More than one state of rest: {} at {:.4g} degrees from below, {} at {:.4g} from above. The way of "
-          "loading "
-          "chooses between them.",
+          "More than one state of rest: {} at {:.4g} degrees from below, {} at {:.4g} from above. Which of them a "
+          "rope reaches depends on how it is loaded.",
           s[0].branch(), s[0].to_twist.limit, s[1].branch(), s[1].to_twist.limit);
       break;
   }

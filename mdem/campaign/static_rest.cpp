@@ -10,9 +10,11 @@
 #include "campaign/rest.hpp"
 #include "model/error.hpp"
 #include "observe/mode_shape.hpp"
-#include "sim/dynamics/modes.hpp"
+#include "run/equilibrium_of.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/load_steps.hpp"
 #include "sim/statics/newton.hpp"
+#include "sim/statics/reduction.hpp"
 #include "sim/statics/stiffness.hpp"
 
 namespace ropewalk {
@@ -50,14 +52,6 @@ Simulation simulation_of(const Scene& scene, Prepared prepared, const State* beg
   return start(scene, prepared);
 }
 
-std::string why_not(const Statics& end, const Simulation& s) {
-  if (const std::string bond = overloaded_bond(s); !bond.empty()) return bond;
-  if (end.end == Statics::End::refused) return "no step of Newton's method is short enough";
-  if (end.end == Statics::End::interrupted) return "it was stopped";
-  return fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force,
-                     end.newton_steps);
-}
-
 LogRow row_of(const MovingScene& m) {
   return log_row(m.observer, m.scene, m.prepared.topology, m.state(), m.account());
 }
@@ -72,7 +66,7 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
   Simulation& s = moving.simulation;
   NewtonOptions how;
   how.fire = scene.run.solver == RunOptions::Solver::automatic;
-  how.most_overloaded = 60;
+  how.most_overloaded = enough_overloaded;
   NewtonStatics newton(s, how);
   const auto progress = [&](long) { return goes_on(); };
   Statics end;
@@ -84,39 +78,22 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
   StaticRest out;
   out.from = from;
   out.at_rest = end.relaxed.at_rest;
-  if (!out.at_rest) out.why = why_not(end, s);
+  if (!out.at_rest) out.why = end_words(s, end, how.fire, false).why;
   const LogRow row = row_of(moving);
   out.twist = row["geometric_twist_deg"];
   out.beta = row["beta_deg"];
   out.Q = row["Q"];
   out.shape = shape_of(row, first);
-  out.force = end.largest_force;
-  out.moment = end.largest_torque;
-  out.above = end.relaxed.above;
   out.steps = end.newton_steps;
-  out.saddles = end.relaxed.saddles;
   out.state = s.state();
   if (out.at_rest) out.stability = judge_stability(s, end);
+  out.found = equilibrium_of(end, out.stability);
   return out;
 }
 
 namespace {
 
-constexpr double per_ns = 1000;  // 1/ps in 1/ns
-
-const char* kind_words(StabilityVerdict::Kind kind) {
-  switch (kind) {
-    case StabilityVerdict::Kind::stable:
-      return "stable";
-    case StabilityVerdict::Kind::unstable:
-      return "unstable";
-    case StabilityVerdict::Kind::unknown:
-      break;
-  }
-  return "unknown";
-}
-
-const char* kind_of(const StaticRest& r) { return r.at_rest ? kind_words(r.stability.kind) : "not at rest"; }
+const char* kind_of(const StaticRest& r) { return r.at_rest ? name_of(r.found.stability) : "not at rest"; }
 
 }  // namespace
 
@@ -143,27 +120,24 @@ std::string static_rest_words(const std::vector<StaticRest>& rests, double toler
 }
 
 std::vector<OutputColumn> static_rest_columns() {
-  return {{"from", "", "where Newton's method began: below, above, or along a motion that grows"},
-          {"geometric_twist_deg", "deg", "geometric twist"},
-          {"beta_deg", "deg", "angle of the outermost tubes"},
-          {"Q", "", "packing charge"},
-          {"branch", "", "compact, compact with defects, or open with its shape"},
-          {"stability", "", "stable, unstable or unknown, as in `equilibria.csv`; or not at rest"},
-          {"growth_per_ns", "1/ns", "rate of the motion that grows fastest; nan: not known"},
-          {"error_per_ns", "1/ns", "smaller rates cannot be told from zero; nan: not known"},
-          {"force_eV_per_nm", "eV/nm", "largest force that is left on what is free"},
-          {"moment_eV", "eV", "largest moment that is left"},
-          {"above_eV", "eV", "energy above that of exact rest, by estimate"},
-          {"saddles", "", "saddles of the energy that it left on the way"},
-          {"steps", "", "of Newton's method"}};
+  std::vector<OutputColumn> all = {
+      {"from", "", "where Newton's method began: below, above, or along a motion that grows"},
+      {"geometric_twist_deg", "deg", "geometric twist"},
+      {"beta_deg", "deg", "angle of the outermost tubes"},
+      {"Q", "", "packing charge"},
+      {"branch", "", "compact, compact with defects, or open with its shape"},
+      {"at_rest", "", "1: it is a state of rest, 0: none was found"}};
+  const std::vector<OutputColumn> of_rest = rest_columns();
+  all.insert(all.end(), of_rest.begin(), of_rest.end());
+  all.push_back({"steps", "", "of Newton's method"});
+  return all;
 }
 
 std::string static_rest_csv(const std::vector<StaticRest>& rests) {
   std::string text = column_names(static_rest_columns()) + "\n";
   for (const StaticRest& r : rests)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.from, r.twist, r.beta, r.Q, r.branch(),
-                        kind_of(r), r.stability.growth * per_ns, r.stability.error * per_ns, r.force, r.moment,
-                        r.above, r.saddles, r.steps);
+    text += fmt::format("{},{},{},{},{},{:d},{},{}\n", r.from, r.twist, r.beta, r.Q, r.branch(), r.at_rest,
+                        rest_cells(r.found), r.steps);
   return text;
 }
 
@@ -181,12 +155,12 @@ std::string static_rest_json(const std::vector<StaticRest>& rests, const std::st
                              {"branch", r.branch()},
                              {"stability", kind_of(r)},
                              {"stability_words", r.at_rest ? r.stability.words() : ""},
-                             {"growth_per_ns", number(r.stability.growth * per_ns)},
-                             {"error_per_ns", number(r.stability.error * per_ns)},
-                             {"force_eV_per_nm", number(r.force)},
-                             {"moment_eV", number(r.moment)},
-                             {"above_eV", number(r.above)},
-                             {"saddles", r.saddles},
+                             {"growth_per_ns", number(r.found.growth)},
+                             {"error_per_ns", number(r.found.error)},
+                             {"force_eV_per_nm", number(r.found.force)},
+                             {"moment_eV", number(r.found.moment)},
+                             {"above_eV", number(r.found.above)},
+                             {"saddles", r.found.saddles},
                              {"steps", r.steps}});
   return out.dump(2) + "\n";
 }
@@ -204,10 +178,11 @@ std::optional<Growing> growing_motion(const Scene& scene, const StaticRest& rest
   Scene copy = scene;
   const Prepared prepared = prepare(copy);
   Simulation s = simulation_of(copy, prepared, &rest.state);
-  const auto free = free_unknowns(s);
-  if (!free) return {};
+  std::string why;
+  const auto reduction = reduction_of(s, why);
+  if (!reduction) return {};
   Tangent tangent = tangent_by_blocks(s);
-  Mode mode = modes_of(tangent, *free, {}).modes.front();
+  Mode mode = modes_of(tangent, *reduction, {}).modes.front();
   return Growing{std::move(s), std::move(tangent), std::move(mode)};
 }
 

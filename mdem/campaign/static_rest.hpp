@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/outputs.hpp"
+#include "io/equilibria.hpp"
 #include "observe/rope_shape.hpp"
 #include "run/moving_scene.hpp"
 #include "sim/statics/stability.hpp"
@@ -21,14 +21,13 @@ Scene static_scene(Scene scene);
 struct StaticRest {
   std::string from;  // "below"
   bool at_rest = false;
-  std::string why;                          // it is not at rest
-  double twist = 0, beta = 0, Q = 0;        // deg, deg
-  double force = 0, moment = 0, above = 0;  // eV/nm, eV: what is left; eV: above the minimum, by estimate
-  int steps = 0;                            // of Newton's method
-  std::int64_t saddles = 0;                 // of the energy, that it left on the way
+  std::string why;                    // it is not at rest
+  double twist = 0, beta = 0, Q = 0;  // deg, deg
+  int steps = 0;                      // of Newton's method
   RopeShape shape = RopeShape::straight;
   StabilityVerdict stability;
-  State state;  // where it came to
+  Equilibrium found;  // where it came to
+  State state;
 
   std::string branch() const;  // as RestSide::branch()
 };

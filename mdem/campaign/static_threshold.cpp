@@ -49,9 +49,9 @@ class Bisection {
     if (!rest.at_rest)
       return out_.why = fmt::format("no state of rest at {:g}: {}", value, rest.why), Outcome::unclear;
     // A solution that left a saddle of the energy is another state than the first one.
-    if (rest.stability.kind == Kind::unstable || rest.saddles > 0) {
+    if (rest.stability.kind == Kind::unstable || rest.found.saddles > 0) {
       out_.above = value;
-      out_.growth = rest.stability.kind == Kind::unstable ? 1000 * rest.stability.growth : StaticThreshold::none;
+      out_.growth = rest.stability.kind == Kind::unstable ? rest.found.growth : StaticThreshold::none;
       out_.motion = rest.stability.kind == Kind::unstable ? growing_motion_words(scene, rest)
                                                           : "it left a saddle of the energy";
       return Outcome::unstable;

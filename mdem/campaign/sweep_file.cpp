@@ -17,7 +17,6 @@
 #include "io/toml_table.hpp"
 #include "io/toml_text.hpp"
 #include "model/error.hpp"
-#include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/prepare.hpp"
@@ -306,14 +305,6 @@ void write_scene(const Sweep& s, SweepPoint& p) {
     keep_free_length(s, before, leading_number(p.values[k]).value_or(0), p.text);
   }
   set_stream(s, axes, p);
-  // The promise of a plan holds for the planned scene with any seed, and for no other scene.
-  if (expectations_of(s.scene_text).errors.empty()) return;
-  for (std::size_t k = 0; k < axes.size(); ++k) {
-    const std::string& key = axes[k]->key;
-    if (key == seed_key || with_value(s.scene_text, key, p.values[k], s.scene_path) == s.scene_text) continue;
-    p.text = without_promises(p.text);
-    return;
-  }
 }
 
 // A wrong scene: named by the point, since it is in no file yet.

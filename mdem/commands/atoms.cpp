@@ -2,14 +2,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
 #include "exchange/atoms_of_state.hpp"
+#include "exchange/step_again.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
+#include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
 
 namespace ropewalk {
@@ -75,6 +78,45 @@ void refuse_what_does_not_fit(const AtomsArguments& a, AtomFormat format) {
     refuse("--relax", "needs a file for LAMMPS", "let the name behind -o end in .data");
 }
 
+SingleState with_source(const AtomsArguments& a) {
+  SingleState single = a.state;
+  single.source = std::make_shared<StateSource>(a.path);
+  return single;
+}
+
+constexpr double patience_s = 60;
+
+// The state where a limit is passed, or the last frame before it; says which.
+AtomicState state_at_place(const AtomsArguments& a, AtomSelection& selection) {
+  const RunDirectory run{a.path};
+  const LimitPlace place = place_of_limit(run, a.at);
+  selection.around_tube = place.tube;
+  selection.around_element = place.element;
+  selection.around_nm = a.length;
+  std::string why;
+  const bool at_frame = place.frame >= 0 && place.before_ps <= 0;
+  const std::optional<double> seconds = at_frame ? std::nullopt : seconds_to_step_again(run, place, why);
+  if (seconds && (*seconds < patience_s || a.step_again)) {
+    TerminalListener terminal(false);
+    if (std::optional<AtomicState> found = state_at_limit(run, place, terminal, why)) {
+      fmt::print(stderr, "note: {}; this is that moment, stepped again\n", place.words);
+      return *found;
+    }
+  } else if (seconds) {
+    why = fmt::format("that takes some {:.0f} min: --step-again", std::ceil(*seconds / 60));
+  }
+  if (place.frame < 0)
+    throw InputError({run.frames(), 0, "--at"},
+                     fmt::format("has no frame before the limit was passed. It was not stepped again: {}", why),
+                     "run it again with a shorter run.frames_every_ps");
+  if (at_frame)
+    fmt::print(stderr, "note: {}; frame {} is of that moment\n", place.words, place.frame);
+  else
+    fmt::print(stderr, "note: {}; frame {} is {:.4g} ps before that. It was not stepped again: {}\n", place.words,
+               place.frame, place.before_ps, why);
+  return state_of_frame(run, place.frame);
+}
+
 void print_comparison(const std::vector<PartComparison>& parts) {
   fmt::print("energies, eV, of the free atoms against a straight tube at rest that was relaxed alike\n");
   fmt::print("{:>5} {:>9} {:>8} {:>13} {:>13} {:>13} {:>13} {:>13}\n", "tube", "elements", "free", "model: bonds",
@@ -92,6 +134,7 @@ void print_comparison(const std::vector<PartComparison>& parts) {
   }
   fmt::print("{:>5} {:>9} {:>8} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g} {:>13.6g}\n", "all", "", sum.atoms,
              sum.bonds, sum.contact, sum.bonds + sum.contact, sum.placed, sum.relaxed);
+  fmt::print("{}\n", verdict_on_walls(parts));
 }
 
 nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {
@@ -104,7 +147,9 @@ nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {
                     {"model_bonds_eV", p.bonds},
                     {"model_contact_eV", p.contact},
                     {"atoms_placed_eV", p.placed},
-                    {"atoms_relaxed_eV", p.relaxed}});
+                    {"atoms_relaxed_eV", p.relaxed},
+                    {"flattest_element", p.flattest},
+                    {"thickness_over_width", p.flatness}});
   return list;
 }
 
@@ -120,20 +165,9 @@ int atoms_command(const AtomsArguments& a) {
   AtomSelection selection;
   selection.tubes = tubes_of(a.tubes);
   set_between(a.between, selection);
-  long frame = a.frame;
-  if (!a.at.empty()) {
-    const LimitPlace place = place_of_limit({a.path}, a.at);
-    frame = place.frame;
-    selection.around_tube = place.tube;
-    selection.around_element = place.element;
-    selection.around_nm = a.length;
-    const std::string when =
-        place.before_ps > 0 ? fmt::format("{:.4g} ps before that", place.before_ps) : std::string("of that moment");
-    fmt::print(stderr, "note: {}; frame {} is {}\n", place.words, place.frame, when);
-  }
-  SingleState single = a.state;
-  if (!is_run(a.path)) single.source = std::make_shared<StateSource>(a.path);
-  const AtomicState s = is_run(a.path) ? state_of_frame({a.path}, frame) : state_of_file(single, a.path);
+  const AtomicState s = !a.at.empty()   ? state_at_place(a, selection)
+                        : is_run(a.path) ? state_of_frame({a.path}, a.frame)
+                                         : state_of_file(with_source(a), a.path);
   const std::vector<TubePart> parts = selected_parts(s, selection);
   const WrittenAtoms written = write_atoms_of(s, parts, a.out, a.potential);
   fmt::print(a.json ? stderr : stdout, "{} written: {} atoms of {} tube{}, {}\n", fmt::join(written.files, ", "),

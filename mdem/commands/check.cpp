@@ -7,11 +7,14 @@
 
 #include "commands/commands.hpp"
 #include "io/clocks.hpp"
+#include "observe/rope_size.hpp"
 #include "plan/forecast.hpp"
+#include "run/accuracy.hpp"
 #include "run/expectations.hpp"
 #include "run/moving_scene.hpp"
 #include "run/run_directory.hpp"
 #include "run/run_manifest.hpp"
+#include "run/run_schedule.hpp"
 #include "scene/memory_size.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
@@ -19,7 +22,10 @@
 #include "scene/state_files.hpp"
 #include "scene/watch.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/dynamics/end_drives.hpp"
 #include "sim/dynamics/shorter_steps.hpp"
+#include "sim/statics/cost.hpp"
+#include "sim/statics/load_steps.hpp"
 
 namespace ropewalk {
 namespace {
@@ -45,6 +51,11 @@ void say_source(const Scene& scene, const Prepared& p) {
                set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
                set.bond.twist * units::eV_in_nN_nm, scene.bond.anharmonic ? "anharmonic" : "harmonic");
   for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
+  if (t.tubes() > 1)
+    if (const std::string size =
+            size_words(rope_size(t, packing_cells(t, p.spacing, p.interaction.law.get()), scene.run.mass_scale));
+        !size.empty())
+      fmt::print("{}\n", size);
   fmt::print("contact law {}", scene.contact.law);
   if (const auto* line = dynamic_cast<const LineLaw*>(p.interaction.law.get()))
     fmt::print(", {} nodes on an element", line->nodes());
@@ -79,6 +90,46 @@ void say_sizes(const Scene& scene, const Prepared& p) {
              10 + memory_needed(elements) / 1e6, files / 1e6, frames);
 }
 
+// One state of rest by Newton's method, or a curve of them.
+void say_statics(const Scene& scene, const Simulation& simulation) {
+  const StaticsCost cost = statics_cost(simulation);
+  double seconds = cost.first_seconds + cost.stability_seconds;
+  std::string what = "one state of rest";
+  if (scene.statics.steps > 0) {
+    const std::vector<double> times = load_step_times(simulation.loads(), scene.statics.steps);
+    seconds += static_cast<double>(times.size() - 1) * (cost.next_seconds + cost.stability_seconds);
+    const EndDrives drives = end_drives(simulation.loads(), simulation.topology());
+    what = fmt::format("{} states of rest along the schedules, from {:.4g} to {:.4g} ps in them", times.size(),
+                       times.front(), times.back());
+    if (end_moment(drives))
+      what += fmt::format(", {:.4g} to {:.4g} nN nm", moment_at(drives, times.front()) / units::nN_nm,
+                          moment_at(drives, times.back()) / units::nN_nm);
+  }
+  fmt::print(
+      "{}, by Newton's method to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most "
+      "{} "
+      "steps each\n",
+      what, scene.run.goal.force, scene.run.goal.energy, scene.run.max_steps);
+  const std::string stability = cost.stability_seconds > 0
+                                    ? fmt::format("{:.2g} s each and {:.2g} MB for whether it is stable",
+                                                  cost.stability_seconds, cost.decomposition_bytes / 1e6)
+                                    : "the rope is too thick for the modes that tell whether it is stable";
+  fmt::print("about {:.2g} s in all, {:.2g} MB of memory; {}\n", seconds,
+             10 + (cost.bytes + cost.decomposition_bytes) / 1e6, stability);
+}
+
+// Batch systems wait for some seconds after TERM, often 30. `each`: seconds of a step.
+void say_stop(const Simulation& simulation, double each) {
+  constexpr double disk = 1e8, worth_a_word = 2;  // bytes per second, as disks that many share take them; s
+  const double bytes = 2.0 * static_cast<double>(simulation.serialise().size()),  // the state, and one to go back to
+      seconds = std::max(RunSchedule::patience, 2 * each) + bytes / disk;
+  if (seconds < worth_a_word) return;
+  fmt::print(
+      "told to stop, a run ends after about {:.0f} s: it writes its checkpoint of {:.2g} MB first, here counted with "
+      "100 MB per second\n",
+      seconds, bytes / 1e6);
+}
+
 // Expectations that were written for another scene than this.
 void say_not_judged(const Scene& scene) {
   for (const Expectation& e : scene.expected)
@@ -107,10 +158,32 @@ int check_run(const RunDirectory& run) {
   return missed(all) > 0 ? not_as_expected : 0;
 }
 
+// A run against a finer model.
+int check_accuracy(const CheckArguments& a) {
+  const RunDirectory dir{a.path};
+  const Accuracy accuracy =
+      a.against.empty() ? accuracy_by_stretch(dir, a.stretch) : accuracy_against(dir, {a.against});
+  fmt::print("{}\n{:20} {:>12} {:>12} {:>10}\n", accuracy.against, "", "here", "finer", "error");
+  double largest = 0;
+  for (const auto& [name, v] : accuracy.found) {
+    fmt::print("{:20} {:12.6g} {:12.6g} {:8.2f} %\n", name, v.here, v.finer, 100 * v.error);
+    largest = std::max(largest, v.error);
+  }
+  fmt::print("at most {:.2f} % off\n", 100 * largest);
+  return 0;
+}
+
 }  // namespace
 
-int check_command(const std::string& path) {
-  if (std::filesystem::is_directory(path)) return check_run({path});
+int check_command(const CheckArguments& a) {
+  const std::string& path = a.path;
+  const bool is_run = std::filesystem::is_directory(path);
+  if (a.accuracy && !is_run)
+    throw InputError({"", 0, "--accuracy"}, "is for a run, and " + path + " is none",
+                     "name the directory of a run");
+  if (!a.against.empty() && !a.accuracy)
+    throw InputError({"", 0, "--against"}, "stands without --accuracy", "give both");
+  if (is_run) return a.accuracy ? check_accuracy(a) : check_run({path});
   Scene scene = read_scene(path);
   const Prepared p = prepare(scene);
   refuse_cooling(scene, p);
@@ -141,6 +214,10 @@ int check_command(const std::string& path) {
   const Energies& e = simulation.forces().energy;
   fmt::print("start: {:.6g} eV in bonds, {:.6g} eV van der Waals, largest force {:.3g} eV/nm\n", e.bonds(), e.vdw,
              simulation.largest_force());
+  if (scene.run.mode == RunOptions::Mode::relax && scene.run.solver != RunOptions::Solver::fire) {
+    say_statics(scene, simulation);
+    return 0;
+  }
   if (scene.run.mode == RunOptions::Mode::relax) {
     fmt::print(
         "relaxation to {:.3g} eV/nm and an energy of the bonds within {:.2g} of the minimum's, at most {} steps\n",
@@ -156,6 +233,7 @@ int check_command(const std::string& path) {
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);
   say_sizes(scene, p);
+  say_stop(simulation, each);
   return 0;
 }
 

@@ -141,10 +141,11 @@ struct CompareArguments {
   std::vector<std::string> y;       // empty: the usual columns
   std::vector<std::string> levels;  // "0.45:measured"
   bool log = false;
-  double mean_ps = 0;    // the table has means over the last so much time; 0: the last rows
-  bool tensile = false;  // strength, toughness and so on of runs that pull a rope
-  bool torsion = false;  // the largest torque and what came with it, of runs that twist a rope
-  std::string svg, csv;  // write these files instead of a page
+  double mean_ps = 0;           // the table has means over the last so much time; 0: the last rows
+  bool tensile = false;         // strength, toughness and so on of runs that pull a rope
+  bool torsion = false;         // the largest torque and what came with it, of runs that twist a rope
+  double yarn_diameter_um = 0;  // with --tensile, turns per metre of such a yarn; 0: none
+  std::string svg, csv;         // write these files instead of a page
 };
 int compare_command(const CompareArguments& arguments);
 int compare_runs(const CompareArguments& arguments);
@@ -196,7 +197,13 @@ struct NewArguments {
 };
 int new_command(const NewArguments& arguments);
 
-int check_command(const std::string& scene);
+struct CheckArguments {
+  std::string path;       // a scene, or the directory of a run
+  bool accuracy = false;  // of a run, by a finer model
+  double stretch = 4;     // ps
+  std::string against;    // directory of a finer run of the same scene; empty: a stretch is run
+};
+int check_command(const CheckArguments& arguments);
 
 struct EnergyArguments {
   std::string state;    // file
@@ -216,31 +223,9 @@ struct BenchArguments {
   std::vector<int> threads = {1};  // measured one after another
   bool list = false;
   bool json = false;
-  int lammps = 0;      // ranks of LAMMPS, measured against as many threads here; 0: only here
-  bool plain = false;  // LAMMPS by the plain forms
-  int parts = 0;       // number of parts to cut the scene into, each measured alone; 0: none
 };
 int bench_command(const BenchArguments& arguments);
-int bench_lammps(const BenchArguments& arguments);
-int bench_parts(const BenchArguments& arguments);
 int bench_device(const BenchArguments& arguments);
-
-struct PlanArguments {
-  std::string scene;
-  std::string error = "2%";
-  std::vector<std::string> observables;  // empty: the usual ones
-  bool end_state = false;
-  std::string out;           // empty: SCENE-planned.toml
-  std::string check;         // directory of a run to compare with a finer model; then no plan is made
-  std::string against;       // with `check`: directory of a finer run of the same scene; empty: a short one is made
-  std::string finest;        // file for the scene with the finest model; empty: none
-  double stretch = 4;        // ps
-  double pilot_seconds = 0;  // processor time of all pilots; 0: a tenth of the runs, or a minute of each core
-  int runs = 1;              // that the plan is for
-  int jobs = 0;              // pilots at a time; 0: one for each core
-};
-int plan_command(const PlanArguments& arguments);
-int check_plan(const PlanArguments& arguments);  // of --check
 
 struct ExportArguments {
   std::string scene;   // a file, or the directory of a run
@@ -253,15 +238,16 @@ int export_command(const ExportArguments& arguments);
 int cite_command(const std::string& directory);
 
 struct AtomsArguments {
-  std::string path;       // directory of a run, or a state file
-  SingleState state;      // of a state file, but for its source
-  std::string out;        // .data, .xyz or .extxyz
-  long frame = -1;        // of a run; from the end if negative
-  std::string at;         // limit, whose place and time are wanted instead
-  double length = 12;     // nm, of that place
-  std::string tubes;      // "0-18,20"; empty: all
-  std::string between;    // "20,40" nm along each tube; empty: all
-  std::string potential;  // empty: that of the sets
+  std::string path;         // directory of a run, or a state file
+  SingleState state;        // of a state file, but for its source
+  std::string out;          // .data, .xyz or .extxyz
+  long frame = -1;          // of a run; from the end if negative
+  std::string at;           // limit, whose place and time are wanted instead
+  double length = 12;       // nm, of that place
+  bool step_again = false;  // to that moment, however long it takes
+  std::string tubes;        // "0-18,20"; empty: all
+  std::string between;      // "20,40" nm along each tube; empty: all
+  std::string potential;    // empty: that of the sets
   bool relax = false;
   bool force = false;
   bool json = false;
@@ -283,6 +269,7 @@ int coarsen_command(const CoarsenArguments& arguments);
 
 struct ImportArguments {
   std::string dir;  // that of the export, after LAMMPS has run in it
+  bool accept_changes = false;  // of in.rope and what it reads
 };
 int import_command(const ImportArguments& arguments);
 

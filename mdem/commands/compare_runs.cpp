@@ -83,6 +83,7 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
     const ReferenceLevel level = level_of(text);
     kind.levels.emplace_back(level.value, level.name);
   }
+  kind.yarn_diameter = 1e3 * a.yarn_diameter_um;
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;

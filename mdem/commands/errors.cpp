@@ -36,8 +36,8 @@ std::string value_text(double value, double error) {
 
 void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
   fmt::print(
-      "Errors of the parameters alone: nothing of time step, elements, rate of loading or noise is in them.\n"
-      "{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
+      "These errors follow from the parameters alone, not from time step, elements, rate of loading or "
+      "noise.\n{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
       "at the end", "value", "± inputs", "± potential", "moves by", "the inputs' from");
   std::string none;
   for (std::size_t k = 0; k < observables().size(); ++k) {
@@ -73,15 +73,17 @@ std::string remedy_of(const std::string& source, const NumericErrors& whole, con
   if (source == "statistics")
     return whole.runs().mean_ps > 0 ? "a mean over four times as long (--mean and run.duration_ps)"
                                     : "the mean of four runs from other starts (replicates = 4 in a sweep)";
-  if (source == "potential") return "no run of this model: potentials of carbon lie so far apart";
+  if (source == "potential") return "nothing in this model: interatomic potentials of carbon differ by so much";
   for (const ErrorSource& s : parameters.sources())
-    if (s.name == source) return fmt::format("{} known twice as well as to {:.2g} %", source, 100 * s.sigma);
+    if (s.name == source)
+      return fmt::format("a value of {} with less than half of its standard error of {:.2g} %", source,
+                         100 * s.sigma);
   return "";
 }
 
 // Results without an error beyond rounding are left out.
 void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters, const std::vector<LogRow>& log) {
-  constexpr double rounding = 1e-9, noise = 1e-5;  // of the largest value, and of 1 in its unit
+  constexpr double rounding = 1e-9, noise = 1e-5;  // relative to the largest value and to 1 in its unit
   const double mean_ps = whole.runs().mean_ps;
   fmt::print("{:<26} {:>14} {:>12} {:>11} {:>12} {:>11}   {}\n",
              mean_ps > 0 ? fmt::format("mean of the last {:.4g} ps", mean_ps) : "at the end", "value",
@@ -116,7 +118,8 @@ void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters,
   if (!whole.runs().starts.empty())
     fmt::print("statistics: scatter of this run and {} from other starts.\n", whole.runs().starts.size());
   if (!too_short.empty())
-    fmt::print("Too short for an error by blocks, about {:.2g} ps would do: {}.\n", needed, too_short);
+    fmt::print("The mean is over too short a time to estimate its own error (about {:.2g} ps would do): {}.\n",
+               needed, too_short);
   for (const std::string& why : whole.runs().remarks) fmt::print("{}.\n", why);
 }
 
@@ -125,7 +128,7 @@ std::string joined(const std::vector<std::string>& names) { return fmt::format("
 void print_left_out(const ErrorInputs& inputs) {
   if (!inputs.without_error.empty())
     fmt::print(
-        "No error is stated of, and none carried from: {}.\nIn a scene's own tables it is stated as in {{ value = "
+        "Taken as exact, since no error is stated: {}.\nIn the tables of a scene it is stated as in {{ value = "
         "0.16, standard_error = 0.02 }}.\n",
         joined(inputs.without_error));
   if (!inputs.not_varied.empty()) fmt::print("Not varied: {}.\n", joined(inputs.not_varied));
@@ -191,7 +194,7 @@ struct FinishedRun {
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
     if (manifest.status == "taken from atoms")
-      throw InputError({dir.path, 0, ""}, "is no run that was run: its elements were taken from atoms",
+      throw InputError({dir.path, 0, ""}, "was not run: its elements were taken from atoms",
                        "run a scene that begins with its final.csv");
     if (manifest.status != "finished")
       throw InputError({dir.path, 0, ""}, fmt::format("is a run that is {}", manifest.status),
@@ -239,7 +242,8 @@ int errors_command(const ErrorsArguments& a) {
   plan.what.mean_ps = a.mean_ps;
   if (a.mean_ps > 0 && stands_still(run.log))
     throw InputError({run.dir.log(), 0, "--mean"},
-                     "is the log of a relaxation: its rows are no times to average over", "leave --mean out");
+                     "is the log of a relaxation: its rows are steps, which have no mean over time",
+                     "leave --mean out");
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   Repeats repeats(jobs, a.quiet);
   const ErrorRuns runs(run.dir, run.scene, run.prepared, a.again);

@@ -34,7 +34,7 @@ int import_command(const ImportArguments& a) {
     throw InputError({a.dir, 0, ""}, "was not made by `ropewalk export` (no lammps.json in it)",
                      "name the directory behind --lammps");
   TerminalListener terminal(false);
-  const ImportedRun run = import_run(dir, terminal);
+  const ImportedRun run = import_run(dir, a.accept_changes, terminal);
   fmt::print("{} states taken over, up to step {}, {:.4g} ps{}\n", run.states, run.step, run.time,
              std::filesystem::exists(dir.report()) ? ". Report: " + dir.report() : "");
   if (!run.passed.empty()) fmt::print("Limits passed: {}\n", run.passed);

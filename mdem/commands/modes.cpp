@@ -13,6 +13,7 @@
 #include "run/run_directory.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_csv.hpp"
+#include "sim/statics/reduction.hpp"
 #include "sim/statics/stiffness.hpp"
 #include "sim/threads/threads.hpp"
 
@@ -37,7 +38,8 @@ void refuse_scene(const std::string& file, const Scene& scene, const Simulation&
                  "run the scene without [thermostat] until it rests");
   if (s.loads().spin_relaxation_interval() > 0)
     throw refuse(file, "twist.geometric_only",
-                 "takes the tubes' own twist away from time to time, which no tangent has", "take it away");
+                 "takes the twist of the tubes away from time to time, so that there is no state at rest",
+                 "take it away");
   if (scene.damping.local != 0) throw refuse(file, "damping.pfc_local", "has no derivative at rest", "set it to 0");
 }
 
@@ -53,16 +55,15 @@ void refuse_moving_loads(const std::string& file, const Simulation& s) {
                  "take a state under the whole load: resume the run, or give a scene whose load acts at once");
 }
 
-std::vector<char> free_or_refuse(const std::string& file, const Simulation& s) {
-  if (auto free = free_unknowns(s)) return *free;
-  throw refuse(
-      file, "",
-      "a grip, [periodic] or [twist] lateral = \"held\" ties several elements together, which modes does not do",
-      "take free ends, or hold elements by [[load]] of kind \"fix\"");
+Reduction reduction_or_refuse(const std::string& file, const Simulation& s) {
+  std::string why;
+  if (auto reduction = reduction_of(s, why)) return *reduction;
+  throw refuse(file, "", why + ", which modes does not do",
+               "hold elements by [[load]] of kind \"fix\", or by one grip");
 }
 
 void refuse_size(const std::string& file, const Simulation& s) {
-  const double need = bytes_of_decomposition(s);
+  const double need = cost_of_decomposition(s).numbers * sizeof(double);
   const double there = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   if (need > 0.7 * there)
     throw refuse(file, "",
@@ -156,14 +157,14 @@ int modes_command(const ModesArguments& a) {
   const Simulation& s = at.simulation;
   refuse_scene(a.path, at.scene, s);
   refuse_moving_loads(a.path, s);
-  const std::vector<char> free = free_or_refuse(a.path, s);
+  const Reduction reduction = reduction_or_refuse(a.path, s);
   refuse_size(a.path, s);
   if (!s.interaction().terms.empty())
     fmt::print(stderr,
                "ropewalk: note: Links, friction and other terms with a memory stay as they are: modes are those of "
                "a rope in which none slips or breaks.\n");
   const Tangent tangent = term_without_tangent(s).empty() ? tangent_by_blocks(s) : tangent_of(s);
-  const double force = largest_free_force(s.topology(), tangent.force, free), speed = largest_speed(s);
+  const double force = largest_free_force(s, tangent.force), speed = largest_speed(s);
   const double most_left = std::max(least_force, of_the_load * largest_load(s));
   if (!a.anyway && (force > most_left || speed > fastest_rest))
     throw refuse(a.path, "",
@@ -179,7 +180,7 @@ int modes_command(const ModesArguments& a) {
                  "take that term away");
   Modes found;
   try {
-    found = modes_of(tangent, free, {a.count, a.shift / per_ns});
+    found = modes_of(tangent, reduction, {a.count, a.shift / per_ns});
   } catch (const std::runtime_error& e) {
     throw refuse(a.path, "", e.what(), "take another --shift, or a smaller --count");
   }

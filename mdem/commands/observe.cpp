@@ -10,7 +10,6 @@
 #include "io/tube_table.hpp"
 #include "model/error.hpp"
 #include "observe/observables.hpp"
-#include "plan/planner.hpp"
 #include "run/events_file.hpp"
 #include "run/run_directory.hpp"
 
@@ -93,11 +92,7 @@ int observe_command(const ObserveArguments& a) {
     }
   }
   if (a.json) fmt::print("{}\n", all.dump(1));
-  if (a.json || expectations_of(scene.text).errors.empty()) return 0;
-  fmt::print("\nThis run was planned; held against a finer model:\n");
-  PlanArguments check;
-  check.check = a.dir;
-  return plan_command(check);
+  return 0;
 }
 
 }  // namespace ropewalk

@@ -11,6 +11,7 @@
 #include "campaign/sweep_runs.hpp"
 #include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -42,7 +43,8 @@ void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory,
                fmt::format("{:.4g} ± {:.1g}", s.to_twist.limit, s.to_twist.error()),
                fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most), s.Q, s.branch());
   fmt::print(
-      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
+      "they do not touch\n",
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
@@ -51,11 +53,12 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
              "left, eV/nm", "left, eV", "branch");
   for (const StaticRest& r : rests) {
     fmt::print("{:<16} {:>12.6g} {:>10.4g} {:>6.3g} {:>12.1e} {:>10.1e}  {}\n", r.from, r.twist, r.beta, r.Q,
-               r.force, r.above, r.branch());
+               r.found.force, r.found.above, r.branch());
     fmt::print("  {}\n", r.at_rest ? r.stability.words() : "not at rest: " + r.why);
   }
   fmt::print(
-      "theory: tubes that crowd like a disc {:.4g} deg (of few tubes a fifth too little), tubes apart {:.4g} deg\n",
+      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
+      "they do not touch\n",
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
@@ -64,6 +67,10 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
                     double length, const std::string& name) {
   if (a.viscosity)
     throw InputError({"", 0, "--viscosity"}, "has no part in statics", "leave it out, or leave out --static");
+  // The file that is written last: with it all are there.
+  const std::string out = a.out.empty() ? "runs/" + name + "-static-rest" : a.out, last = out + "/static-rest.json";
+  if (!a.force && fs::exists(last))
+    throw InputError({out, 0, "--out"}, "holds static-rest.json", "choose another name, or give --force");
   use_threads(a.jobs);
   listen_to_stop_signals();
   const Scene plain = static_scene(scene);
@@ -82,12 +89,8 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
     }
   }
   const std::string words = static_rest_words(rests, a.tolerance), json = static_rest_json(rests, words);
-  const std::string out = a.out.empty() ? "runs/" + name + "-static-rest" : a.out;
-  if (!a.force && fs::exists(out + "/static-rest.csv"))
-    throw InputError({out, 0, "--out"}, "holds static-rest.csv", "choose another name, or give --force");
   fs::create_directories(out);
-  write_file_atomically(out + "/static-rest.csv", static_rest_csv(rests));
-  write_file_atomically(out + "/static-rest.json", json);
+  write_files_together({{out + "/static-rest.csv", static_rest_csv(rests)}, {last, json}});
   if (a.json) {
     fmt::print("{}", json);
     return 0;

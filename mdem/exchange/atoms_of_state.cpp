@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <tuple>
 
+#include "atoms/atom_files.hpp"
+#include "io/draft.hpp"
+#include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/limits_file.hpp"
@@ -91,7 +95,50 @@ double energy_at_rest(const AtomicState& s, const TubePart& part, const AtomForc
   return relax_atoms(folder, "rest", forces, 1, held_atoms(rest, parts, ranges), options).front().after;
 }
 
+// Looks for the flattest section of each part, among elements that are not held. A section is the atoms of an
+// element, seen along the line through the centres of its neighbours; thickness and width are those of an ellipse
+// with the same second moments.
+void add_flatness(const AtomicState& s, const std::vector<AtomRange>& ranges, const std::vector<Vector3>& atoms,
+                  std::vector<PartComparison>& parts) {
+  std::vector<Vector3> centres;
+  for (const AtomRange& r : ranges) {
+    Vector3 sum = Vector3::Zero();
+    for (long k = r.first - 1; k < r.last; ++k) sum += atoms[static_cast<std::size_t>(k)];
+    centres.emplace_back(sum / static_cast<double>(r.last - r.first + 1));
+  }
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const AtomRange& r = ranges[k];
+    PartComparison& p = parts[static_cast<std::size_t>(r.part)];
+    if (is_held(s, p.part, r.element)) continue;  // so that it has both neighbours
+    const Vector3 axis = (centres[k + 1] - centres[k - 1]).normalized();
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    for (long i = r.first - 1; i < r.last; ++i) {
+      const Vector3 from = atoms[static_cast<std::size_t>(i)] - centres[k], across = from - from.dot(axis) * axis;
+      moments += across * across.transpose();
+    }
+    const Vector3 found =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
+    const double flatness = std::sqrt(std::max(0.0, found[1]) / found[2]);
+    if (p.flattest >= 0 && flatness >= p.flatness) continue;
+    p.flatness = flatness;
+    p.flattest = r.element;
+  }
+}
+
 }  // namespace
+
+AtomicState state_in_scene(const Scene& scene, const Prepared& prepared, const State& state) {
+  AtomicState out;
+  out.sets = scene.sets;
+  out.topology = prepared.topology;
+  out.state = state;
+  out.interaction = prepared.interaction;
+  out.held.assign(state.size(), 0);
+  for (const std::vector<int>& end : ends_of(prepared.loads, prepared.topology))
+    for (const int e : end) out.held[static_cast<std::size_t>(e)] = 1;
+  out.title = fmt::format("{} at {:.6g} ps", scene.name, state.time);
+  return out;
+}
 
 AtomicState state_of_frame(const RunDirectory& dir, long frame) {
   Scene scene = read_run_scene(dir);
@@ -106,16 +153,7 @@ AtomicState state_of_frame(const RunDirectory& dir, long frame) {
   frames->seek(static_cast<std::size_t>(wanted));
   StoredFrame stored;
   frames->next(prepared.topology, stored);
-  AtomicState out;
-  out.sets = scene.sets;
-  out.topology = prepared.topology;
-  out.state = stored.state;
-  out.interaction = prepared.interaction;
-  out.held.assign(stored.state.size(), 0);
-  for (const std::vector<int>& end : ends_of(prepared.loads, prepared.topology))
-    for (const int e : end) out.held[static_cast<std::size_t>(e)] = 1;
-  out.title = fmt::format("{} at {:.6g} ps", scene.name, stored.state.time);
-  return out;
+  return state_in_scene(scene, prepared, stored.state);
 }
 
 AtomicState state_of_file(const SingleState& state, const std::string& path) {
@@ -146,7 +184,8 @@ LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit) {
   Scene scene = read_run_scene(dir);
   const Prepared prepared = prepare(scene);
   LimitPlace place;
-  place.frame = -1;
+  place.limit = limit;
+  place.step = known->passed_at_step;
   place.tube = known->passed_tube;
   place.element = known->passed_element;
   const auto frames = open_frames(dir.frames());
@@ -156,9 +195,6 @@ LimitPlace place_of_limit(const RunDirectory& dir, const std::string& limit) {
     place.frame = k;
     place.before_ps = known->passed_at_ps - stored.state.time;
   }
-  if (place.frame < 0)
-    throw InputError({dir.frames(), 0, "--at"}, "has no frame before the limit was passed",
-                     "run it again with a shorter run.frames_every_ps");
   const std::string at = place_words(*known);
   place.words = fmt::format("{} is passed {}{}", known->key, since_words(*known), at.empty() ? "" : ": " + at);
   return place;
@@ -209,16 +245,21 @@ WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& p
     if (!potential.empty()) throw;
     out.not_relaxable = e.what();
   }
-  out.ranges = write_atoms(path, format, atoms, s.title, s.state.time);
+  // All of them, or none.
+  Draft all(path);
+  out.ranges = write_atoms(all, format, atoms, s.title, s.state.time);
   out.atoms = out.ranges.back().last;
   std::string table = "tube,element,first_atom,last_atom\n";
   for (const AtomRange& r : out.ranges) table += fmt::format("{},{},{},{}\n", r.tube, r.element, r.first, r.last);
   out.files = {path, beside(path, "-elements.csv")};
-  write_file_atomically(out.files.back(), table);
-  if (!forces) return out;
-  out.files.push_back(beside(path, "-relax.in"));
-  write_file_atomically(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
-                                                      held_atoms(s, parts, out.ranges)));
+  std::vector<std::pair<std::string, std::string>> beside_it = {{out.files.back(), table}};
+  if (forces) {
+    out.files.push_back(beside(path, "-relax.in"));
+    beside_it.emplace_back(out.files.back(), relax_input(fs::path(path).stem().string(), *forces, parts.size(),
+                                                         held_atoms(s, parts, out.ranges)));
+  }
+  write_files_together(beside_it);
+  all.replace();
   return out;
 }
 
@@ -238,6 +279,10 @@ std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::
   const std::vector<PartEnergies> found =
       relax_atoms(work.path(), "atoms", forces, parts.size(), held_atoms(s, parts, written.ranges), options);
   write_file_atomically(beside(path, "-relaxed.data"), read_file(work.file("atoms-relaxed.data")));
+  AtomFiles relaxed({work.file("atoms-relaxed.data")}, 1);
+  AtomFrame frame;
+  relaxed.next(frame);
+  add_flatness(s, written.ranges, frame.positions, out);
   // Parts with the same sites, held alike, have the same energy at rest.
   std::map<std::tuple<int, int, int, std::vector<char>>, double> at_rest;
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -252,6 +297,19 @@ std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::
     out[p].relaxed = found[p].after - at_rest[key];
   }
   return out;
+}
+
+std::string verdict_on_walls(const std::vector<PartComparison>& parts) {
+  constexpr double flat = 0.8, collapsed = 0.5;
+  const auto p = std::min_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+    return a.flatness < b.flatness;
+  });
+  if (p == parts.end() || p->flattest < 0) return "All elements are held: nothing is said of the walls.";
+  const char* verdict = p->flatness < collapsed ? "The walls have collapsed"
+                        : p->flatness < flat    ? "The walls are flattened"
+                                                : "The walls hold";
+  return fmt::format("{}: the flattest section, tube {}, element {}, has {:.2f} of its width as thickness.", verdict,
+                     p->part.tube, p->flattest, p->flatness);
 }
 
 }  // namespace ropewalk

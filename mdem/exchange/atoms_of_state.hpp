@@ -1,6 +1,7 @@
 // The atoms of a state, or of the place where a run passed a limit, as a file; and what LAMMPS makes of them.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@ struct AtomicState {
   std::string title;       // "RUN at 243 ps"
 };
 
+AtomicState state_in_scene(const Scene& scene, const Prepared& prepared, const State& state);
 // A frame of a run: number `frame` from 0, from the end if negative. Throws InputError where there is none.
 AtomicState state_of_frame(const RunDirectory& dir, long frame);
 // A state file.
@@ -29,7 +31,9 @@ AtomicState state_of_file(const SingleState& state, const std::string& path);
 
 // The last stored frame at which a limit was not yet passed, and the element at which it was.
 struct LimitPlace {
-  long frame = 0;
+  std::string limit;
+  std::int64_t step = 0;  // at which it was passed
+  long frame = -1;       // -1: there is none
   double before_ps = 0;  // how long before the limit was passed the frame is
   int tube = -1, element = -1;
   std::string words;  // "wall_twist is passed from 243 ps on: tube 3, element 12"
@@ -53,7 +57,12 @@ struct PartComparison {
   long atoms = 0;                 // free ones
   double bonds = 0, contact = 0;  // of the model; half of each contact with other parts
   double placed = 0, relaxed = 0;
+  // The flattest section of the relaxed atoms: thickness over width, 1 for a round one.
+  double flatness = 1;
+  int flattest = -1;  // its element; -1: all are held
 };
+// "The walls hold: ...", "The walls have collapsed: ...", by the flattest section of all parts.
+std::string verdict_on_walls(const std::vector<PartComparison>& parts);
 
 struct WrittenAtoms {
   long atoms = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 
 #include "io/data_files.hpp"
 #include "io/files.hpp"
@@ -74,8 +75,39 @@ constexpr std::array<OutputColumn, 7> columns_of_sections = {{
     {"atoms", "", "atoms of the element over the sites that it has"},
 }};
 
+constexpr std::array<OutputColumn, 15> columns_of_tubes = {{
+    {"tube", "", "tube, from 0"},
+    {"n", "", "first number of its chirality; n < m: the mirror image of (m,n)"},
+    {"m", "", "second number of its chirality"},
+    {"elements", "", "elements"},
+    {"atoms", "", "carbon atoms in elements"},
+    {"atoms_in_no_element", "", "carbon atoms of this wall that are in none"},
+    {"endless", "", "1: it goes through a periodic box, and is cut open there"},
+    {"cap_first", "", "1: its first end has a cap"},
+    {"cap_last", "", "1: its last end has a cap"},
+    {"pentagons", "", "rings of five atoms"},
+    {"heptagons", "", "rings of seven atoms"},
+    {"atoms_beside_holes", "", "atoms with two neighbours, away from the ends"},
+    {"atoms_with_four_bonds", "", "atoms with four neighbours or more"},
+    {"radius_nm", "nm", "mean radius"},
+    {"misfit_nm", "nm",
+     "root mean square of the distance of atoms from the places where the elements have them"},
+}};
+
+std::string found_tubes_csv(const std::vector<CoarseTube>& tubes) {
+  std::string text = column_names(columns_of_tubes) + "\n";
+  for (std::size_t k = 0; k < tubes.size(); ++k) {
+    const CoarseTube& t = tubes[k];
+    text += fmt::format("{},{},{},{},{},{},{:d},{:d},{:d},{},{},{},{},{:.6g},{:.6g}\n", k, t.chirality.n,
+                        t.chirality.m, t.elements, t.atoms, t.without_site, t.endless, t.cap_below, t.cap_above,
+                        t.pentagons, t.heptagons, t.open_atoms, t.crowded, t.radius, t.misfit);
+  }
+  return text;
+}
+
 }  // namespace
 
+std::vector<OutputColumn> found_tube_columns() { return {columns_of_tubes.begin(), columns_of_tubes.end()}; }
 std::vector<OutputColumn> section_columns() { return {columns_of_sections.begin(), columns_of_sections.end()}; }
 
 std::string words_of(const CoarseTube& t) {
@@ -98,8 +130,11 @@ std::string words_of(const CoarseTube& t) {
 }
 
 Coarsening::Coarsening(const CoarsenSettings& settings)
-    : settings_(settings), files_(settings.files, settings.time_step_fs) {
-  files_.next(frame_);
+    : Coarsening(settings, std::make_unique<AtomFiles>(settings.files, settings.time_step_fs)) {}
+
+Coarsening::Coarsening(const CoarsenSettings& settings, std::unique_ptr<AtomSource> atoms)
+    : settings_(settings), atoms_(std::move(atoms)) {
+  if (!atoms_->next(frame_)) throw InputError({atoms_->file(), 0, ""}, "has no frame", "give one or more");
   for (const char carbon : frame_.carbon) foreign_ += carbon ? 0 : 1;
   find();
   choose_sets();
@@ -108,19 +143,19 @@ Coarsening::Coarsening(const CoarsenSettings& settings)
 
 void Coarsening::find() {
   if (frame_.box.periodic_known) {
-    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, files_.file());
+    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
     return;
   }
   // A data file does not say whether its box is periodic. In a box shrunk around open tubes their ends would touch.
   AtomBox open = frame_.box;
   open.periodic = {false, false, false};
   try {
-    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, files_.file());
+    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
     return;
   } catch (const InputError&) {
   }
   frame_.box = open;
-  found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, files_.file());
+  found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
 }
 
 void Coarsening::choose_sets() {
@@ -134,12 +169,12 @@ void Coarsening::choose_sets() {
     auto at = std::find_if(sets_.begin(), sets_.end(), same);
     if (at == sets_.end()) {
       if (given.empty()) {
-        sets_.push_back(read_parameters(find_parameters(shipped_set_of(tube.chirality, files_.file()), "")));
+        sets_.push_back(read_parameters(find_parameters(shipped_set_of(tube.chirality, atoms_->file()), "")));
       } else {
         const auto own = std::find_if(given.begin(), given.end(), same);
         if (own == given.end())
           throw InputError(
-              {files_.file(), 0, "--parameters"},
+              {atoms_->file(), 0, "--parameters"},
               fmt::format("it has a {} tube, and none of the sets is of these", chirality_name(tube.chirality)),
               fmt::format("make one: ropewalk calibrate --chirality {},{}", tube.chirality.n, tube.chirality.m));
         sets_.push_back(*own);
@@ -171,7 +206,7 @@ void Coarsening::fit_first() {
       const int elements = elements_below(reference, tube.top, a);
       if (elements < fewest_elements)
         throw InputError(
-            {files_.file(), 0, ""},
+            {atoms_->file(), 0, ""},
             fmt::format("a {} tube is {:.3g} nm long, shorter than {} elements of {:.4g} nm",
                         chirality_name(tube.chirality),
                         static_cast<double>(tube.top) / 3 * reference.shape.length_per_hexagon, fewest_elements, a),
@@ -181,7 +216,7 @@ void Coarsening::fit_first() {
         if (fit->filled(e) < emptiest) {
           const Vector3 at = tube.centre;
           throw InputError(
-              {files_.file(), 0, ""},
+              {atoms_->file(), 0, ""},
               fmt::format("element {} of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm has {:.0f} % of its "
                           "atoms",
                           e, chirality_name(tube.chirality), at.x(), at.y(), at.z(), 100 * fit->filled(e)),
@@ -205,7 +240,7 @@ void Coarsening::fit_first() {
     const double missing = 1 - static_cast<double>(tube.atoms.size()) / static_cast<double>(sites);
     if (missing > most_misfits)
       throw InputError(
-          {files_.file(), 0, ""},
+          {atoms_->file(), 0, ""},
           fmt::format("{:.0f} % of the sites of a {} tube around ({:.2f}, {:.2f}, {:.2f}) nm have no atom",
                       100 * missing, chirality_name(tube.chirality), tube.centre.x(), tube.centre.y(),
                       tube.centre.z()),
@@ -240,7 +275,7 @@ void Coarsening::fit_first() {
     tubes_.push_back(told);
   }
   if (topology_.elements() > max_elements)
-    throw InputError({files_.file(), 0, ""}, fmt::format("makes more than {} elements", max_elements),
+    throw InputError({atoms_->file(), 0, ""}, fmt::format("makes more than {} elements", max_elements),
                      "take fewer atoms");
   fit();
   const std::vector<SectionShape> all = shapes();
@@ -278,15 +313,18 @@ std::vector<SectionShape> Coarsening::shapes() const {
 bool Coarsening::next() {
   AtomFrame frame;
   const bool periodic = frame_.box.periodic_known;
-  if (!files_.next(frame)) return false;
+  if (!atoms_->next(frame)) return false;
   if (!periodic) frame.box.periodic = frame_.box.periodic;
   frame_ = std::move(frame);
-  // Images as near as can be to those before.
+  // The images that have moved as their neighbours have: a rope that drifts through its box stays whole.
   const NearestImage nearest(frame_.box);
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    const Vector3 moved = positions_[i] + nearest(frame_.positions[i] - positions_[i]);
-    positions_[i] = moved;
-  }
+  Vector3 way = Vector3::Zero();
+  for (const ElementFit& fit : fits_)
+    for (const LabelledAtom& atom : fit.atoms()) {
+      Vector3& at = positions_[atom.atom];
+      way += nearest(frame_.positions[atom.atom] - at - way);
+      at += way;
+    }
   fit();
   return true;
 }
@@ -405,6 +443,7 @@ CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, 
   LimitsFile limits;
   limits.limits = watch.records();
   write_file_atomically(to.limits(), limits_json(limits));
+  write_file_atomically(to.file("found-tubes.csv"), found_tubes_csv(coarse.tubes()));
   write_file_atomically(to.file("sections.csv"), sections.csv(coarse.topology(), coarse.filled()));
   write_file_atomically(to.final_state(), state_csv(coarse.topology(), coarse.state()));
   Manifest m;

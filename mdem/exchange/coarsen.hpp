@@ -1,7 +1,7 @@
 // Trajectories of atoms as runs of elements.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@
 namespace ropewalk {
 
 struct CoarsenSettings {
-  std::vector<std::string> files;       // of one simulation
+  std::vector<std::string> files;       // of one simulation, or names of what is read elsewhere
   std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
   double element_length = 0;            // nm; 0: that of the first set
   double time_step_fs = 1;              // of MD steps, in dumps that state no time
@@ -37,14 +37,15 @@ class Coarsening {
   // Reads the first frame and finds its tubes. Throws InputError where there is none, a tube is too short, or more
   // than a fifth of its atoms has no place on its lattice.
   explicit Coarsening(const CoarsenSettings& settings);
+  Coarsening(const CoarsenSettings& settings, std::unique_ptr<AtomSource> atoms);
 
   const std::vector<ParameterSet>& sets() const { return sets_; }
   const Topology& topology() const { return topology_; }  // types with their length and radius alone
   const std::vector<CoarseTube>& tubes() const { return tubes_; }
   long loose() const { return found_.loose; }  // carbon atoms in no tube
   long foreign() const { return foreign_; }    // atoms of other species
-  bool states_time() const { return files_.states_time(); }
-  bool cut_off() const { return files_.cut_off(); }
+  bool states_time() const { return atoms_->states_time(); }
+  bool cut_off() const { return atoms_->cut_off(); }
 
   // The present frame. Velocities are zero where the file has none.
   const State& state() const { return state_; }
@@ -62,7 +63,7 @@ class Coarsening {
   void fit();
 
   CoarsenSettings settings_;
-  AtomFiles files_;
+  std::unique_ptr<AtomSource> atoms_;
   AtomFrame frame_;
   FoundTubes found_;
   long foreign_ = 0;
@@ -70,7 +71,7 @@ class Coarsening {
   Topology topology_;
   std::vector<ElementFit> fits_;
   std::vector<CoarseTube> tubes_;
-  std::vector<Vector3> positions_;  // of the present frame: the images that hang together
+  std::vector<Vector3> positions_;  // of the present frame, for atoms of elements: the images that hang together
   State state_;
 };
 
@@ -79,10 +80,11 @@ struct CoarseRun {
   double time = 0;     // ps, of the last frame
   std::string passed;  // limits, in words; empty: none
 };
-// Makes the directory of a run with log, frames, limits, sections.csv and its last state. No checkpoint: a scene
-// goes on from final.csv.
+// Makes the directory of a run with log, frames, limits, found-tubes.csv, sections.csv and its last state. No
+// checkpoint: a scene goes on from final.csv.
 CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, const RunDirectory& to, bool force,
                            RunListener& listener);
 std::vector<OutputColumn> section_columns();
+std::vector<OutputColumn> found_tube_columns();
 
 }  // namespace ropewalk

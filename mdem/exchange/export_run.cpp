@@ -33,9 +33,9 @@ void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& lis
   if (fs::exists(from.state_memory())) copy(from.state_memory(), to.state_memory(), all);
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
-  copy(from.log(), to.log(), c.log.bytes);
+  copy(from.log(), to.log(), c.files.log.bytes);
   const FrameFormat format = format_of(from.frames());
-  NewFrames(to.frames(format), format, 0, from.frames(), c.frames.bytes).replace();
+  NewFrames(to.frames(format), format, 0, from.frames(), c.files.frames.bytes).replace();
   copy(from.manifest(), to.manifest(), all);
   write_checkpoint(to, c);
 }
@@ -134,8 +134,6 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   const Prepared p = prepare(scene);
   const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
   if (scene.run.mode != RunOptions::Mode::relax) tell_of_long_steps(s, listener);
-  write_file_atomically(dir.start(), start_json(start_of(scene, s)));
-  write_file_atomically(dir.tubes(), tubes_csv(p.topology));
   StateHeader header;
   header.step = s.state().step;
   header.elements = p.topology.elements();
@@ -143,9 +141,16 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.work = s.work();
   header.dissipated = s.dissipated();
   header.heat = s.heat();
-  write_file_atomically(dir.first_state(),
-                        state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()));
-  write_file_atomically(dir.input(), lammps_input(script_of(scene, p, s)));
+  LammpsStart start = start_of(scene, s);
+  for (const auto& [path, content] :
+       {std::pair{dir.tubes(), tubes_csv(p.topology)},
+        std::pair{dir.first_state(),
+                  state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory())},
+        std::pair{dir.input(), lammps_input(script_of(scene, p, s))}}) {
+    start.sums[fs::path(path).filename().string()] = hash_hex(content);
+    write_file_atomically(path, content);
+  }
+  write_file_atomically(dir.start(), start_json(start));
   write_file_atomically(dir.readme(), readme);
 }
 

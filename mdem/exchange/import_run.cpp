@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "exchange/export_run.hpp"
 #include "io/files.hpp"
@@ -27,6 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* run_again = "take lammps.states and lammps-rows.csv away and run in.rope again";
+
 class Import {
  public:
   Import(const RunDirectory& dir, RunListener& listener)
@@ -44,7 +48,7 @@ class Import {
         gauges_(start_.gauges()),
         first_(start(scene_, prepared_).forces().energy) {}
 
-  ImportedRun go() {
+  ImportedRun go(bool accept_changes) {
     const LammpsStart began = read_start(files_);
     if (began.time_step != prepared_.time_step)
       throw InputError({files_.start(), 0, "time_step_ps"}, "is not that of the scene",
@@ -52,12 +56,15 @@ class Import {
     if (!fs::exists(files_.rows()) || !fs::exists(files_.states()))
       throw InputError({files_.path, 0, ""}, "holds nothing that LAMMPS has done",
                        "run in.rope with lmp-ropewalk first, as README.txt says");
-    for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size()))
+    hold_to_export(began, accept_changes);
+    for (const LammpsRow& row : read_lammps_rows(files_, prepared_.interaction.terms.size())) {
+      hold_to_steps(began, row);
       rows_[static_cast<std::int64_t>(row.step)] = row;
+    }
     remove_run_parts(dir_);
-    log_ = read_file(dir_.log()).substr(0, checkpoint_.log.bytes);
+    log_ = read_file(dir_.log()).substr(0, checkpoint_.files.log.bytes);
     const std::string there = dir_.frames();
-    frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.frames.bytes);
+    frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.files.frames.bytes);
     const std::int64_t from = reached_;
     watch_.inherit_from(checkpoint_.limits.limits, from);
     mark_ = energy_mark(start_);
@@ -86,7 +93,51 @@ class Import {
     }
   }
 
+  // What LAMMPS has read is what was exported.
+  void hold_to_export(const LammpsStart& began, bool accept_changes) const {
+    for (const std::string& path : {files_.input(), files_.tubes(), files_.first_state()}) {
+      const auto sum = began.sums.find(fs::path(path).filename().string());
+      if (sum == began.sums.end() || (fs::exists(path) && hash_hex(read_file(path)) == sum->second)) continue;
+      if (!accept_changes)
+        throw InputError({path, 0, ""}, fs::exists(path) ? "is not as it was exported" : "is not there any more",
+                         "bring it back, or give --accept-changes where the change does not move the elements");
+      listener_.tell(fmt::format("note: {} is not as it was exported", path));
+    }
+  }
+
+  void hold_to_steps(const LammpsStart& began, const LammpsRow& row) const {
+    if (scene_.run.mode == RunOptions::Mode::relax) return;
+    const double time = began.time + (row.step - static_cast<double>(began.step)) * began.time_step;
+    if (!(std::fabs(row.time - time) <= 1e-6 * (std::fabs(time) + began.time_step)))
+      throw InputError({files_.rows(), 0, "time_ps"},
+                       fmt::format("is {:.9g} at step {:.0f}, which is at {:.9g} by the export", row.time, row.step,
+                                   time),
+                       run_again);
+  }
+
+  // Energies follow from a state and the scene.
+  void hold_to_scene(const State& state, const NeighbourList& list, const LammpsRow& row) const {
+    Interaction in = prepared_.interaction;
+    in.terms.clear();
+    in.damping = {};
+    Forces own(state.size());
+    ForceEngine().compute(prepared_.topology, in, list, state, own);
+    const double bonds = row.stretch + row.shear + row.bend + row.twist;
+    for (const auto& [name, here, there] : {std::tuple{"bonds", own.energy.bonds(), bonds},
+                                            std::tuple{"contacts", own.energy.vdw, row.vdw},
+                                            std::tuple{"motion", kinetic_energy(prepared_.topology, state), row.kinetic}})
+      if (!(std::fabs(here - there) <= 1e-4 * (1 + std::fabs(here))))
+        throw InputError({files_.rows(), 0, ""},
+                         fmt::format("has {:.9g} eV in {} at step {:.0f}, and the state of that step has {:.9g} by "
+                                     "the scene",
+                                     there, name, row.step, here),
+                         run_again);
+  }
+
   void add(const State& state, const LammpsRow& from) {
+    NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
+    list.build(prepared_.topology, state);
+    hold_to_scene(state, list, from);
     EnergyAccount account;
     account.time_step = prepared_.time_step;
     account.moment = moment_at(end_drives(prepared_.loads, prepared_.topology), from.time);
@@ -101,7 +152,7 @@ class Import {
     account.first = first_;
     account.ends = readings_at(state);
     log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
-    check_limits(state, account);
+    check_limits(state, list, account);
     check_account(account, state.step);
     (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
     prepared_.state = state;
@@ -111,9 +162,7 @@ class Import {
   }
 
   // LAMMPS watches no limits: they are looked for in the states that it left.
-  void check_limits(const State& state, const EnergyAccount& account) {
-    NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
-    list.build(prepared_.topology, state);
+  void check_limits(const State& state, const NeighbourList& list, const EnergyAccount& account) {
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
     const RunEnergies energies = relax ? RunEnergies() : RunEnergies{energy_drift(account), account.kinetic};
     for (const std::string& line : watch_.check(prepared_.topology, state, list, energies, true))
@@ -160,9 +209,9 @@ class Import {
     simulation.set_memory(memory_);
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated, last_.heat});
     simulation.inherit_from(gauges_.sums);
-    checkpoint_.log = mark_of(log_);
-    checkpoint_.frames = (*frames_)->mark();
-    checkpoint_.log.step = checkpoint_.frames.step = reached_;
+    checkpoint_.files.log = mark_of(log_);
+    checkpoint_.files.frames = (*frames_)->mark();
+    checkpoint_.files.log.step = checkpoint_.files.frames.step = reached_;
     checkpoint_.snapshot = nullptr;
     checkpoint_.ends_for = StopReason::none;
     checkpoint_.limits.limits = watch_.records();
@@ -229,6 +278,8 @@ class Import {
 
 }  // namespace
 
-ImportedRun import_run(const RunDirectory& dir, RunListener& listener) { return Import(dir, listener).go(); }
+ImportedRun import_run(const RunDirectory& dir, bool accept_changes, RunListener& listener) {
+  return Import(dir, listener).go(accept_changes);
+}
 
 }  // namespace ropewalk

@@ -17,7 +17,7 @@ struct ImportedRun {
 };
 
 // Adds what LAMMPS has left in an exported directory to the files of the run. Throws InputError where that does not
-// belong to the run, or is nothing; the run then stands where it stood.
-ImportedRun import_run(const RunDirectory& dir, RunListener& listener);
+// belong to the run, or is nothing; the run then stands where it stood. `accept_changes`: of files of the export.
+ImportedRun import_run(const RunDirectory& dir, bool accept_changes, RunListener& listener);
 
 }  // namespace ropewalk

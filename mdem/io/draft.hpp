@@ -2,6 +2,7 @@
 // renames one, or makes one under a name made from another's (tests/structure/doors.py).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -33,11 +34,15 @@ class Draft {
 
   const std::string& name() const { return name_; }
   void write(std::string_view content);
+  // Replaces bytes that were written.
+  void patch(std::uint64_t at, std::string_view bytes);
   // For a program that has failed to write it, and tells no reason: throws where the system takes no more of it.
   void need_room() const;
   // Has all of it on the disk.
   void sync();
   void replace();
+  // The same; the file that was there before takes the name `old`. Between the two renames it alone is there.
+  void replace_keeping(const std::string& old);
   // Its name; it is not removed.
   std::string keep() {
     replaced_ = true;

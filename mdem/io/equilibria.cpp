@@ -30,25 +30,34 @@ const char* name_of(Equilibrium::Stability stability) {
   return "";
 }
 
-std::vector<OutputColumn> equilibria_columns() {
+std::vector<OutputColumn> rest_columns() {
   return {
-      {"step", "", "of the row of log.csv with this state"},
-      {"time_ps", "ps", "in the schedules of the scene"},
       {"stability", "",
        "stable: no motion grows faster than the error of its rate; unstable: one does; unknown: it cannot be told"},
       {"growth_per_ns", "1/ns", "rate of the motion that grows fastest, negative: all decay; nan: not known"},
       {"error_per_ns", "1/ns", "smaller rates cannot be told from zero; nan: not known"},
-      {"force_eV_per_nm", "eV/nm", "largest force that is left on what is free"},
+      {"force_eV_per_nm", "eV/nm", "largest force that is left on a free element"},
       {"moment_eV", "eV", "largest moment that is left"},
       {"above_eV", "eV", "energy above that of exact rest, by estimate"},
       {"saddles", "", "saddles of the energy that it left on the way from the state before"}};
 }
 
+std::string rest_cells(const Equilibrium& e) {
+  return fmt::format("{},{},{},{},{},{},{}", name_of(e.stability), e.growth, e.error, e.force, e.moment, e.above,
+                     e.saddles);
+}
+
+std::vector<OutputColumn> equilibria_columns() {
+  std::vector<OutputColumn> all = {{"step", "", "of the row of log.csv with this state"},
+                                   {"time_ps", "ps", "in the schedules of the scene"}};
+  const std::vector<OutputColumn> of_rest = rest_columns();
+  all.insert(all.end(), of_rest.begin(), of_rest.end());
+  return all;
+}
+
 std::string equilibria_csv(const Equilibria& all) {
   std::string text = column_names(equilibria_columns()) + "\n";
-  for (const Equilibrium& e : all)
-    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", e.step, e.time, name_of(e.stability), e.growth, e.error,
-                        e.force, e.moment, e.above, e.saddles);
+  for (const Equilibrium& e : all) text += fmt::format("{},{},{}\n", e.step, e.time, rest_cells(e));
   return text;
 }
 

@@ -27,6 +27,10 @@ using Equilibria = std::vector<Equilibrium>;
 
 const char* name_of(Equilibrium::Stability stability);
 
+// From the stability on: as tables of states of rest have them.
+std::vector<OutputColumn> rest_columns();
+std::string rest_cells(const Equilibrium& e);
+
 std::string equilibria_csv(const Equilibria& all);
 // Throws InputError with line and column.
 Equilibria read_equilibria(const std::string& path);

@@ -134,6 +134,10 @@ void Draft::write(std::string_view content) {
   if (!write_all(file_.get(), content)) throw error_of(path_, not_written);
 }
 
+void Draft::patch(std::uint64_t at, std::string_view bytes) {
+  if (!write_all_at(file_.get(), bytes, at)) throw error_of(path_, not_written);
+}
+
 void Draft::need_room() const {
   // More than programs write at a time: where they found no room, this finds none.
   const std::string some(1 << 17, ' ');
@@ -226,13 +230,16 @@ std::string read_file(const std::string& path) {
   }
 }
 
-void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as) {
+void Draft::replace_keeping(const std::string& old) {
+  sync();
+  if (uninterrupted([&] { return ::rename(path_.c_str(), old.c_str()); }) != 0 && errno != ENOENT)
+    throw error_of(old, not_written);
+  replace();
+}
+
+void write_file_atomically(const std::string& path, std::string_view content) {
   Draft draft(path);
   draft.write(content);
-  draft.sync();
-  if (!keep_old_as.empty() && uninterrupted([&] { return ::rename(path.c_str(), keep_old_as.c_str()); }) != 0 &&
-      errno != ENOENT)
-    throw file_error(keep_old_as, not_written, errno);
   draft.replace();
 }
 

@@ -29,9 +29,8 @@ std::ifstream opened_stream(const std::string& path);
 void refuse_devices(const std::string& path);
 
 // Writes a temporary file beside `path`, flushes it to the disk and renames it. Throws InputError (disk full,
-// no permission, ...) and leaves an existing file untouched. `keep_old_as`: the name that the existing file takes;
-// between the two renames it alone is there.
-void write_file_atomically(const std::string& path, std::string_view content, const std::string& keep_old_as = "");
+// no permission, ...) and leaves an existing file untouched.
+void write_file_atomically(const std::string& path, std::string_view content);
 
 // Makes an empty file beside `path` under a name that was free, for what is renamed to `path` once it is whole.
 std::string new_part_of(const std::string& path);

@@ -32,6 +32,15 @@ bool has_control_character(std::string_view text) {
   return false;
 }
 
+std::string_view next_word(std::string_view& text) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
+  text.remove_prefix(begin);
+  const std::size_t end = std::min(text.find_first_of(" \t\r"), text.size());
+  const std::string_view word = text.substr(0, end);
+  text.remove_prefix(end);
+  return word;
+}
+
 std::optional<double> leading_number(std::string_view text, std::size_t* length) {
   const std::size_t at = std::min(text.find_first_not_of(" \t\n"), text.size());
   double value = 0;

@@ -11,6 +11,9 @@ namespace ropewalk {
 bool has_control_character(std::string_view text);
 bool is_utf8(std::string_view text);
 
+// Takes the next word of a line off, with the spaces before it; empty: there is none.
+std::string_view next_word(std::string_view& text);
+
 // The number that a text begins with, behind spaces: with a decimal point, in every locale. `length`: of what was
 // read.
 std::optional<double> leading_number(std::string_view text, std::size_t* length = nullptr);

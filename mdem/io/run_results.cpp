@@ -8,9 +8,12 @@
 namespace ropewalk {
 namespace {
 
-constexpr double still_there = 0.95;   // of the largest value
+constexpr double still_there = 0.95;   // relative to the largest value
 constexpr double twisted_from = 0.01;  // nN nm
-constexpr double drawn_from = 1e-6;    // strain
+constexpr double bent_share = 0.05;    // of the bending moment, above which the torque of a bent rope is no noise
+constexpr double bent_beside = 0.2;    // torque over the bending moment; and that over tension times radius
+constexpr double drawn_from = 1e-6;    // strain, from the start
+constexpr double drawn_again = 1e-3;   // strain, of a rope that was shorter before
 constexpr double stored_from = 1e-3;   // MJ/kg
 constexpr double turned_from = 1;      // degrees
 
@@ -25,10 +28,28 @@ double largest(const std::vector<LogRow>& log, const char* column) {
   return largest(log, log.size(), [column](const LogRow& r) { return r[column]; });
 }
 
+double bending_moment(const LogRow& r) {
+  return std::fmax(std::hypot(r["torque_upper_x_nN_nm"], r["torque_upper_y_nN_nm"]),
+                   std::hypot(r["torque_lower_x_nN_nm"], r["torque_lower_y_nN_nm"]));
+}
+
+// Of a rope that is bent rather than twisted or pulled: clamps have some moment in any test.
+void add_bending(const std::vector<LogRow>& log, RunResults& r) {
+  const double most = largest(log, log.size(), bending_moment);
+  if (!(most > twisted_from) || largest(log, log.size(), torque_of(log)) > bent_beside * most) return;
+  const double pull = std::fmax(largest(log, "tension_upper_nN"), largest(log, "tension_lower_nN"));
+  if (pull * log.front()["radius_mid_nm"] * bent_beside > most) return;
+  const auto at =
+      std::find_if(log.begin(), log.end(), [&](const LogRow& row) { return bending_moment(row) == most; });
+  r.bending_max = most;
+  r.bending_max_ps = (*at)["time_ps"];
+  r.bending_fell = bending_moment(log.back()) < still_there * most;
+}
+
 void add_torque(const std::vector<LogRow>& log, std::size_t within, RunResults& r) {
   const auto torque = torque_of(log);
   const double most = largest(log, log.size(), torque);
-  if (!(most > twisted_from)) return;
+  if (!(most > twisted_from) || most < bent_share * r.bending_max) return;
   r.torque_max = most;
   r.torque_within = largest(log, within, torque);
   const auto at =
@@ -40,7 +61,11 @@ void add_torque(const std::vector<LogRow>& log, std::size_t within, RunResults& 
 
 void add_strength(const std::vector<LogRow>& log, RunResults& r) {
   const LogRow* most = strongest_row(log);
-  if (!most || !(largest(log, "ends_strain") > drawn_from)) return;
+  if (!most) return;
+  double shortest = (*most)["ends_strain"];
+  for (const LogRow* row = log.data(); row < most; ++row) shortest = std::fmin(shortest, (*row)["ends_strain"]);
+  const double strain = (*most)["ends_strain"];
+  if (!(strain > drawn_from || strain - shortest > drawn_again)) return;
   r.strength = (*most)["stress_GPa"];
   r.strength_N_per_tex = (*most)["specific_stress_N_per_tex"];
   r.strength_strain = (*most)["ends_strain"];
@@ -85,6 +110,12 @@ std::string torque_sentence(const RunResults& r) {
   text += fmt::format(", beyond {} from {:.4g} ps on", r.first_limit, r.first_limit_ps);
   if (std::isfinite(r.torque_within)) text += fmt::format("; before, it reached {:.4g} nN nm", r.torque_within);
   return text + ".";
+}
+
+std::string bending_sentence(const RunResults& r) {
+  return fmt::format("The bending moment {} {:.4g} nN nm{} at {:.4g} ps.",
+                     r.bending_fell ? "passed its maximum," : "rose to", r.bending_max, r.bending_fell ? "," : "",
+                     r.bending_max_ps);
 }
 
 std::string break_sentence(const RunResults& r) {
@@ -147,6 +178,7 @@ RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRe
     r.first_limit_ps = first->passed_at_ps;
   }
   const std::size_t within = rows_within(log, limits);
+  add_bending(log, r);
   add_torque(log, within, r);
   add_strength(log, r);
   if (!breaks.empty()) {
@@ -200,6 +232,7 @@ std::string result_cells(const RunResults& results) {
 
 std::vector<std::string> result_sentences(const RunResults& r) {
   std::vector<std::string> out;
+  if (std::isfinite(r.bending_max)) out.push_back(bending_sentence(r));
   if (std::isfinite(r.torque_max)) out.push_back(torque_sentence(r));
   if (r.tubes_broken > 0) out.push_back(break_sentence(r));
   if (std::isfinite(r.strength)) out.push_back(strength_sentence(r));

@@ -37,6 +37,8 @@ struct RunResults {
   double torque_max_deg = none, torque_max_ps = none;    // rotation and time of that row
   bool torque_fell = false;                              // below 95 % of it by the end
   double torque_within = none;                           // nN nm: the same of the rows before the first limit
+  double bending_max = none, bending_max_ps = none;      // nN nm: largest moment across z on an end; of a bent rope
+  bool bending_fell = false;                             // below 95 % of it by the end
   double first_break_deg = none, first_break_ps = none;  // of the tubes
   TubeBreak first_break;
   int tubes_broken = 0;
@@ -58,7 +60,7 @@ std::string result_cells(const RunResults& results);
 // The same by name; NaN: the run has no such value.
 std::vector<double> result_values(const RunResults& results);
 
-// A sentence each: torque and first break, strength, stored energy.
+// A sentence each: bending moment, torque and first break, strength, stored energy.
 std::vector<std::string> result_sentences(const RunResults& results);
 
 }  // namespace ropewalk

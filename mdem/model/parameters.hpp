@@ -22,7 +22,8 @@
 //               registries of two real tubes, over its mean
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV)
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad)
+//               and sublattice_rise (nm): how far the second sublattice has moved against the first
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
 //               off

@@ -16,7 +16,7 @@ using Group = ObservableGroup;
 using M = Measurement;
 using units::degree;
 
-constexpr double rounding = 1e-4;  // of the potential energies, pairs being in single precision
+constexpr double rounding = 1e-4;  // relative to the potential energies: pairs are in single precision
 
 // Of the rope whose mass counts.
 const Energies& energies(const M& m) {
@@ -50,7 +50,7 @@ std::vector<Observable>& table() {
       {"time_step_fs", "fs", "time step, a part of the whole one where the motion is fast", Group::load,
        [](const M& m) { return m.account.time_step / units::fs; }},
       {"moment_nN_nm", "nN nm",
-       "moment about the axis that the scene prescribes at the ends, on each tube or in total as it says; "
+       "moment about the axis that is prescribed at the ends, on each tube or in total as the scene has it; "
        "left-handed: negative",
        Group::load, [](const M& m) { return m.account.moment / units::nN_nm; }},
 
@@ -126,9 +126,9 @@ std::vector<Observable>& table() {
        Group::shape, [](const M& m) { return m.loading.ends_apart; }, real, "distance of the ends"},
       {"ends_strain", "", "the change of that distance since the start, over the free length between the ends",
        Group::shape, [](const M& m) { return m.loading.strain; }, real, "strain of the rope"},
-      {"least_tension_nN", "nN", "tension of the tube with the least, over its middle third", Group::tubes,
+      {"least_tension_nN", "nN", "smallest tension of a tube, averaged over its middle third", Group::tubes,
        [](const M& m) { return m.loading.least_tension / units::nN_nm; }, real, "least tension of a tube"},
-      {"most_tension_nN", "nN", "tension of the tube with the most, over its middle third", Group::tubes,
+      {"most_tension_nN", "nN", "largest tension of a tube, averaged over its middle third", Group::tubes,
        [](const M& m) { return m.loading.most_tension / units::nN_nm; }, real, "largest tension of a tube"},
       {"most_curvature_per_nm", "1/nm", "largest curvature of a tube", Group::tubes,
        [](const M& m) { return m.loading.curvature; }, real, "largest curvature of a tube"},

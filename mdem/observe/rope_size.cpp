@@ -1,7 +1,11 @@
 #include "observe/rope_size.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
+
+#include "model/units.hpp"
 
 namespace ropewalk {
 
@@ -38,5 +42,16 @@ RopeSize rope_size(const Topology& topology, const std::vector<double>& cells, d
   if (!(out.mass > 0)) out.mass_per_length = std::numeric_limits<double>::quiet_NaN();
   return out;
 }
+
+std::string size_words(const RopeSize& size) {
+  constexpr double tex = 1e-6;                                                           // kg/m
+  const double per_m = size.mass_per_length * units::mass_unit_kg * 1e9;                 // kg/m
+  const double density = size.mass_per_length / size.area * units::mass_unit_kg * 1e27;  // kg/m^3
+  if (!std::isfinite(density)) return "";
+  return fmt::format("linear density {:.4g} tex, cross-section {:.4g} nm^2, {:.4g} g/cm^3: 1 GPa is {:.3g} N/tex",
+                     per_m / tex, size.area, 1e-3 * density, 1e3 / density);
+}
+
+double yarn_turns(double angle, double diameter) { return std::tan(angle) / (units::pi * diameter); }
 
 }  // namespace ropewalk

@@ -1,6 +1,7 @@
 // How much rope there is: what stress, specific stress, energies per mass and pressures refer to.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sim/contact/contact_law.hpp"
@@ -22,5 +23,12 @@ std::vector<double> packing_cells(const Topology& topology, double spacing, cons
 
 // `cells`: packing_cells(). `mass_scale`: times which the masses of the topology are those of the tubes.
 RopeSize rope_size(const Topology& topology, const std::vector<double>& cells, double mass_scale);
+
+// Linear density, area and density, and what a stress in GPa is in N/tex. Empty: they are not known.
+std::string size_words(const RopeSize& size);
+
+// 1/nm: turns per length of a yarn of this diameter (nm) whose surface stands at this angle (rad) to its axis. From
+// tan(angle) = pi d T.
+double yarn_turns(double angle, double diameter);
 
 }  // namespace ropewalk

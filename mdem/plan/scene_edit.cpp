@@ -157,7 +157,7 @@ std::string replaced(std::vector<std::string> lines, const toml::source_region& 
 std::string with_key(const std::string& text, const std::string& table, const std::string& key,
                      const std::string& value) {
   std::vector<std::string> lines = lines_of(text);
-  set_line(lines, range_of(lines, table), table, key, key + " = " + value + "  # planned");
+  set_line(lines, range_of(lines, table), table, key, key + " = " + value);
   return text_of(lines);
 }
 
@@ -203,16 +203,6 @@ double number_at(const std::string& text, const std::string& path, const std::st
   const std::optional<double> value = node ? node->value<double>() : std::nullopt;
   if (!value) throw InputError({file, 0, path}, "is not a number there", "write one");
   return *value;
-}
-
-std::string without_key(const std::string& text, const std::string& table, const std::string& key) {
-  std::vector<std::string> lines = lines_of(text);
-  const LineRange r = range_of(lines, table);
-  if (r.from == std::string::npos) return text;
-  const std::size_t at = find_key(lines, r, key, false);
-  if (at == std::string::npos) return text;
-  lines[at] = "# " + lines[at];
-  return text_of(lines);
 }
 
 }  // namespace ropewalk

@@ -21,7 +21,4 @@ std::string with_value(const std::string& text, const std::string& path, const s
 // none.
 double number_at(const std::string& text, const std::string& path, const std::string& file);
 
-// Makes the line that sets a key a comment; the text itself where there is none.
-std::string without_key(const std::string& text, const std::string& table, const std::string& key);
-
 }  // namespace ropewalk

@@ -10,10 +10,12 @@
 #include "observe/bending.hpp"
 #include "observe/means.hpp"
 #include "observe/spacing.hpp"
-#include "plan/planned_scene.hpp"
 #include "scene/dissipation.hpp"
+#include "scene/kinds/scene_kind.hpp"
+#include "scene/laws/contact_law_kind.hpp"
 #include "scene/loads/rotate.hpp"
 #include "sim/dynamics/refine.hpp"
+#include "sim/statics/newton.hpp"
 
 namespace ropewalk {
 namespace {
@@ -41,31 +43,42 @@ void scale(double by, Vec3Array& v) {
     for (double& x : *c) x *= by;
 }
 
-Model planned_model(const Scene& scene, const Prepared& p, const State& end) {
+// Why elements cannot be shorter in this scene; empty: they can.
+std::string fixed_length(const Scene& scene) {
+  if (scene.from_file()) return "the elements come from a file";
+  if (tube_size_key(scene).tube_size == SceneKey::TubeSize::no) return "the tubes have no common length";
+  const ContactLawKind* law = contact_law_kind(scene.contact.law);
+  if (law && !law->any_element_length) return fmt::format("law \"{}\" holds for its set's length alone", law->name);
+  for (const auto& drive : scene.drives)
+    if (const std::string why = drive->why_not_lengthened(); !why.empty()) return why;
+  return "";
+}
+
+Model own_model(const Scene& scene, const Prepared& p, const State& end) {
   return {scene, p.topology, p.interaction, p.loads, p.state, end, p.spacing, p.time_step, p.stepping};
 }
 
-Model finer_model(const Model& planned, bool half) {
-  Model m = planned;
+Model finer_model(const Model& own, bool half) {
+  Model m = own;
   m.scene.contact.nodes = 0;
   m.scene.contact.cutoff = 0;
   m.scene.contact.precision = Interaction::Precision::full;
   m.scene.run.stepping = m.stepping = Stepping{};
   m.scene.run.mass_scale = 1;
   // Slow masses move slowly: the kinetic energy stays.
-  scale(std::sqrt(planned.scene.run.mass_scale), m.end.velocity);
-  scale(std::sqrt(planned.scene.run.mass_scale), m.end.angular_velocity);
+  scale(std::sqrt(own.scene.run.mass_scale), m.end.velocity);
+  scale(std::sqrt(own.scene.run.mass_scale), m.end.angular_velocity);
   if (half) {
     m.scene.element_length *= 0.5;
-    m.scene.damping = same_dissipation(m.scene.damping, planned.scene.element_length, m.scene.element_length);
-    m.start = halved(planned.topology, m.start, Splitting::between);
-    m.end = halved(planned.topology, m.end, Splitting::between);
+    m.scene.damping = same_dissipation(m.scene.damping, own.scene.element_length, m.scene.element_length);
+    m.start = halved(own.topology, m.start, Splitting::between);
+    m.end = halved(own.topology, m.end, Splitting::between);
   }
   m.topology = empty_topology(m.scene);
-  for (int t = 0; t < planned.topology.tubes(); ++t)
-    m.topology.add_tube(half ? 2 * planned.topology.length_of(t) - 1 : planned.topology.length_of(t),
-                        planned.topology.tube_type[t]);
-  m.topology.groups.rope_begin = planned.topology.groups.rope_begin;
+  for (int t = 0; t < own.topology.tubes(); ++t)
+    m.topology.add_tube(half ? 2 * own.topology.length_of(t) - 1 : own.topology.length_of(t),
+                        own.topology.tube_type[t]);
+  m.topology.groups.rope_begin = own.topology.groups.rope_begin;
   set_collapse(m.scene, m.topology);
   m.interaction = interaction_of(m.scene);
   add_terms(m.scene, m.topology, m.start, m.interaction);
@@ -141,7 +154,11 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
   Observed observed(m);
   Simulation s = m.at(m.end);
   if (m.scene.run.mode == RunOptions::Mode::relax) {
-    s.relax(m.scene.run.goal, m.scene.run.max_steps, [](long) { return true; });
+    const auto go_on = [](long) { return true; };
+    if (m.scene.run.solver == RunOptions::Solver::fire)
+      s.relax(m.scene.run.goal, m.scene.run.max_steps, go_on);
+    else
+      NewtonStatics(s).relax(m.scene.run.goal, m.scene.run.max_steps, go_on);
     observed.add(s);
     return observed.means();
   }
@@ -157,19 +174,17 @@ std::map<std::string, double> seen(const Model& m, double stretch) {
 
 }  // namespace
 
-double SpotCheck::Comparison::error() const {
-  return finer != 0 ? std::fabs(planned / finer - 1) : std::fabs(planned);
-}
+double SpotCheck::Comparison::error() const { return finer != 0 ? std::fabs(here / finer - 1) : std::fabs(here); }
 
 SpotCheck spot_check(const Scene& scene, const Prepared& prepared, const State& end, double stretch) {
   const std::string kept = fixed_length(scene);
-  const Model planned = planned_model(scene, prepared, end), finer = finer_model(planned, kept.empty());
+  const Model own = own_model(scene, prepared, end), finer = finer_model(own, kept.empty());
   SpotCheck out;
   out.how = scene.run.mode == RunOptions::Mode::relax ? "relaxed again" : fmt::format("{:.3g} ps more", stretch);
   out.how +=
       fmt::format("; finer: elements of {:.4g} nm{}, double precision, {:.3g} fs", finer.scene.element_length,
                   kept.empty() ? "" : " (" + kept + ")", finer.time_step / units::fs);
-  const std::map<std::string, double> a = seen(planned, stretch), b = seen(finer, stretch);
+  const std::map<std::string, double> a = seen(own, stretch), b = seen(finer, stretch);
   for (const auto& [name, value] : a) out.observables[name] = {value, b.at(name)};
   return out;
 }

@@ -1,4 +1,4 @@
-// A planned run held against a finer model: from where it ended, a short stretch is run once more as planned and
+// A run held against a finer model: from where it ended, a short stretch is run once more with its own model and
 // once finer, and what is observed is compared.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace ropewalk {
 struct SpotCheck {
   std::string how;
   struct Comparison {
-    double planned = 0, finer = 0;
+    double here = 0, finer = 0;
     double error() const;  // relative to the finer one
   };
   std::map<std::string, Comparison> observables;

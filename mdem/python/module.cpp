@@ -23,4 +23,5 @@ PYBIND11_MODULE(_core, m) {
   python::bind_run_files(m);
   python::bind_runs(m);
   python::bind_energy(m);
+  python::bind_atoms(m);
 }

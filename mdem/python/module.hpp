@@ -18,5 +18,6 @@ void bind_frames(py::module_& m);
 void bind_run_files(py::module_& m);
 void bind_runs(py::module_& m);
 void bind_energy(py::module_& m);
+void bind_atoms(py::module_& m);
 
 }  // namespace ropewalk::python

@@ -133,7 +133,7 @@ void go(const Asked& asked, Begin begin) {
     if (result.end == RunEnd::broken_off)
       listener.tell(fmt::format("ended at step {}; resume {} goes on", result.steps, result.directory.path));
     if (result.end == RunEnd::not_relaxed || result.end == RunEnd::at_limit || result.end == RunEnd::wall_time)
-      listener.tell(result.reason);
+      listener.tell(result.remedy.empty() ? result.reason : result.reason + "; " + result.remedy);
   }
   listener.raise_what_was_raised();
   if (result.error) std::rethrow_exception(result.error);

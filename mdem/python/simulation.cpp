@@ -80,6 +80,7 @@ void SteppedScene::steps(std::int64_t count, bool energies) {
     simulation_.steps(count, energies);
   else
     steps_with_breaks(count, energies);
+  simulation_.forget_events();  // nobody asks for them
   if (energies) energies_ = simulation_.forces().energy;
 }
 

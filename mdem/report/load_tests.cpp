@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/units.hpp"
+#include "observe/rope_size.hpp"
 #include "report/log_figures.hpp"
 #include "report/scatter.hpp"
 
@@ -36,6 +37,13 @@ int followed(const LoadTestGroup& group) {
 
 Mean mean_at(const LoadTestGroup& group, const std::string& x) {
   return mean_of(group.tests, [&](const LoadTest& t) { return t.at[x]; });
+}
+
+// Of a yarn with the angle of each run in the row that the horizontal axis is taken from.
+Mean turns_per_m(const LoadTestKind& kind, const LoadTestGroup& group) {
+  return mean_of(group.tests, [&](const LoadTest& t) {
+    return 1e9 * yarn_turns(t.at["beta_deg"] * units::degree, kind.yarn_diameter);
+  });
 }
 
 // Of the replicate that passed a limit first.
@@ -103,11 +111,13 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
 
 std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
                            const std::string& x) {
-  std::string text = "run,replicates,to_half," + x;
+  const bool turns = kind.yarn_diameter > 0;
+  std::string text = "run,replicates,to_half," + x + (turns ? ",turns_per_m" : "");
   for (const OutputColumn& c : kind.columns) text += fmt::format(",{0},{0}_standard_error", c.name);
   text += "," + column_names(limit_columns()) + "\n";
   for (const LoadTestGroup& g : groups) {
     text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), mean_at(g, x).value);
+    if (turns) text += fmt::format(",{:.6g}", turns_per_m(kind, g).value);
     for (std::size_t k = 0; k < kind.columns.size(); ++k) {
       const Mean m = mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; });
       text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
@@ -128,6 +138,8 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
       heading(kind.heading) + paragraph(kind.words) +
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
       escape_markup(column_axis(x).quantity) + "</th>";
+  if (kind.yarn_diameter > 0)
+    html += fmt::format("<th>turns per metre of a yarn of {:.4g} µm</th>", 1e-3 * kind.yarn_diameter);
   std::vector<OutputColumn> columns = limit_columns();
   columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
   for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
@@ -138,6 +150,7 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
     };
     html += fmt::format("<tr><th>{}</th><td>{} of {}</td>", escape_markup(g.name), followed(g), g.tests.size());
     cell(mean_at(g, x));
+    if (kind.yarn_diameter > 0) cell(turns_per_m(kind, g));
     const std::vector<LimitRecord> limits = earliest_limits(g);
     const LimitRecord* first = first_limit(limits);
     html += first

@@ -35,10 +35,11 @@ struct LoadTestKind {
   std::vector<OutputColumn> columns;                        // the first is drawn
   bool yarn_law = false;                                    // over beta_deg with cos^2 of that angle
   std::vector<std::pair<double, std::string>> levels = {};  // to compare the first column with, and their names
+  double yarn_diameter = 0;  // nm; beside the column of the horizontal axis turns per metre of such a yarn; 0: none
 };
 
-// Columns: run, replicates, to_half, --x, then each of the kind with its standard error, then limit_columns() of
-// the replicate that passed a limit first.
+// Columns: run, replicates, to_half, --x, turns_per_m where there is a yarn_diameter, then each of the kind with
+// its standard error, then limit_columns() of the replicate that passed a limit first.
 std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
                            const std::string& x);
 // The first column over the column `x` of the log, from 0. With `yarn_law` over beta_deg with the cos^2 of that

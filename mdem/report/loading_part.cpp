@@ -74,16 +74,16 @@ Panel equilibria(const ReportInput& in) {
       return std::numeric_limits<double>::quiet_NaN();
     };
   };
-  Panel out{
-      "States of rest",
-      fmt::format("{} States of rest along the schedules of the loads, frictionless. Solid: no small motion grows; "
-                  "dashed: one does, or it cannot be told.",
-                  escape_markup(in.reason) + "."),
-      {by_moment || turned ? "torque" : "tension", by_moment || turned ? "nN nm" : "nN", false},
-      {},
-      false,
-      false,
-      turned ? "rotation_deg" : "ends_strain"};
+  Panel out{"States of rest",
+            fmt::format(
+                "{} Equilibrium states along the schedules of the loads, without friction. Solid: stable. Dashed: "
+                "unstable, or the stability is not known.",
+                escape_markup(in.reason) + "."),
+            {by_moment || turned ? "torque" : "tension", by_moment || turned ? "nN nm" : "nN", false},
+            {},
+            false,
+            false,
+            turned ? "rotation_deg" : "ends_strain"};
   const auto any = [&](Stability s) {
     return std::any_of(in.equilibria.begin(), in.equilibria.end(), [&](const auto& e) { return e.stability == s; });
   };
@@ -218,12 +218,10 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
   if (!can_draw(chart)) return "";
   return fmt::format("<figure><h3>{}</h3>\n", title) + chart_svg(chart) +
          figures.caption(
-             "Of the contacts across a tube in the middle of the rope, mean over the tubes that start at the same "
-             "distance from the axis; negative where they are drawn apart. Tension presses on the inner tubes; and "
-             "the "
-             "neighbours of a twisted tube, cut across, need more room around the axis than there is, which draws "
-             "the "
-             "inner tubes apart.") +
+             "Pressure of the contacts on a tube in the middle of the rope, averaged over the tubes that start at "
+             "the same distance from the axis; negative where tubes are drawn apart. Tension of the outer tubes "
+             "presses the inner ones together. Twist also does the opposite: the section of a tube that leans is "
+             "longer than wide, so that tubes around the axis need more room and draw the inner ones apart.") +
          data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") +
          "</figure>\n";
 }
@@ -234,8 +232,8 @@ std::string loop_words(const std::vector<LogRow>& log) {
   const double in = largest(log, "work_eV"), lost = log.back()["dissipated_eV"];
   if (most < 5 || last > 0.5 * most || !(in > 0)) return "";
   return paragraph(fmt::format(
-      "The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} "
-      "eV, <b>{} %</b>, are lost to damping or still move.",
+      "The rope was turned by up to {}° and back to {}°: of {} eV that were put in, {} eV came back, and {} eV, "
+      "<b>{} %</b>, are lost to damping or still in motion.",
       number_text(most), last < 0.01 ? "0" : number_text(last, 3), number_text(in),
       number_text(in - log.back()["work_eV"]),
       number_text(log.back()["work_eV"] - (potential_energy(log.back()) - potential_energy(log.front()))),
@@ -253,11 +251,11 @@ std::string stored_words(const ReportInput& in) {
                 ? fmt::format("This rope stored <b>{} MJ/kg</b> when {} was passed.", number_text(within, 3),
                               escape_markup(in.results.first_limit))
                 : fmt::format("{} was passed from the start.", escape_markup(in.results.first_limit))) +
-           fmt::format(" Beyond, it reached {} MJ/kg, which no real tubes hold.", number_text(most, 3));
+           fmt::format(" Beyond that limit the model reached {} MJ/kg, more than real tubes can store.",
+                       number_text(most, 3));
   return text +
          " For scale, what others measured and calculated. One perfect bundle is not a macroscopic rope: a yarn "
-         "has bundles "
-         "that slip, gaps, bent and short tubes, and the mass of what is not loaded.";
+         "has bundles that slip, gaps, bent and short tubes, and mass that bears no load.";
 }
 
 // The figures of other authors and samples, with their sources.

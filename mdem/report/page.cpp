@@ -103,7 +103,7 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 @media print{body{font-size:8.6pt;line-height:1.4}main{max-width:none;padding:0}
 p,ul,.warnings,figcaption{max-width:none}.lead{font-size:1em}a{color:inherit}
 h1{font-size:1.7rem}h2{font-size:1.15rem;margin:.7em 0 .4em;padding-top:.4em;break-after:avoid}h3{margin:0 0 .2em}
-figure,.pair figure{margin-bottom:.8em}figcaption{line-height:1.3}
+figure,.pair figure{margin-bottom:.6em}figcaption{font-size:.9em;line-height:1.3}
 .pair{grid-template-columns:1fr 1fr;gap:0 18px}.pair svg{width:auto;max-width:100%;max-height:43mm}
 .views{display:grid;grid-template-columns:repeat(3,1fr);gap:6px 14px}.views svg{width:100%;height:auto}
 .row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto}

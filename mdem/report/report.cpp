@@ -1,6 +1,7 @@
 #include "report/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +149,7 @@ std::string balance_words(const ReportInput& in) {
   std::string text = fmt::format("The largest deviation is {} eV.", number_text(largest, 3));
   for (const LimitRecord& r : in.watched.limits)
     if (r.key == "energy_drift" && r.limit > 0)
-      text += fmt::format(" It was at most {} % of the energy that had moved; the limit is {} %.",
+      text += fmt::format(" It was at most {} % of the energy that was converted; the limit is {} %.",
                           number_text(100 * r.largest, 2), number_text(100 * r.limit, 2));
   return text;
 }
@@ -176,9 +177,7 @@ bool is_beyond(const ReportInput& in, double time) {
 
 std::string tag(const ReportInput& in, const std::string& when, double time, double beta) {
   return "<div class=\"tag\">" + when + (in.rope ? " &#160; β = " + degrees(beta) : "") +
-         (is_beyond(in, time) ? " <span class=\"soft\">beyond " + escape_markup(in.results.first_limit) + "</span>"
-                              : "") +
-         "</div>\n";
+         (is_beyond(in, time) ? " <span class=\"soft\">beyond a limit</span>" : "") + "</div>\n";
 }
 
 // --- Radius along the rope ----------------------------------------------------------------------------------
@@ -423,8 +422,8 @@ std::string passed_words(const LimitRecord& r) {
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
-      "Elements are rigid and bonds are elastic without end; a tube is not. These bonds are beyond what the "
-      "parameter set gives as the limits of the model; what they do is not to be trusted.");
+      "Bonds of the model stay elastic at any deformation, and real tubes do not. The bonds listed here are beyond "
+      "the limits of the parameter set: their forces are not those of tubes.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
@@ -481,13 +480,11 @@ std::string whole_errors(const ReportInput& in) {
   const NumericRuns& runs = in.whole.runs();
   std::string html = paragraph(
       "The whole error of each result, and what decides it: statistics, the scatter of runs from other starts with "
-      "other "
-      "random numbers; numerics, from runs with half the element length, half the time step and half the rate of "
-      "all that is prescribed; parameters, the standard errors of the inputs; and potential, by how far four "
-      "potentials of "
-      "carbon lie apart. The bands of the charts are all of them together; errors-statistics.csv, "
-      "errors-numerics.csv, "
-      "errors.csv and errors-potential.csv have every row. What the model itself leaves out is not in them.");
+      "other random numbers; numerics, from runs with half the element length, half the time step and half the "
+      "rate of all that is prescribed; parameters, the standard errors of the inputs; and potential, the spread "
+      "between four interatomic potentials of carbon. The bands of the charts are all of them together; "
+      "errors-statistics.csv, errors-numerics.csv, errors.csv and errors-potential.csv have every row. What the "
+      "model itself leaves out is not in them.");
   std::vector<ReportFact> facts;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -519,10 +516,10 @@ std::string carried_errors(const ReportInput& in) {
     names += fmt::format("{}{} ({:.2g} %)", names.empty() ? "" : ", ", source.name, 100 * source.sigma);
   std::string html = paragraph(
       "Two standard errors that follow from the parameters alone: ± that of the inputs, " + escape_markup(names) +
-      ", and ± that of the interatomic potential, by how far four potentials of carbon lie apart. The bands "
-      "of the charts are both together. The run was repeated with each parameter changed; errors.csv and "
-      "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time "
-      "step, length of the elements, rate of loading and noise.");
+      ", and ± that of the interatomic potential, from the spread between four potentials of carbon. The bands of "
+      "the charts are both together. The run was repeated with each parameter changed; errors.csv and "
+      "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time step, "
+      "length of the elements, rate of loading and noise.");
   std::vector<ReportFact> facts;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -589,12 +586,12 @@ std::string observables_part(const ReportInput& in) {
   }
   html += "</tbody></table></div>\n";
   if (timed)
-    html += paragraph(fmt::format(
-        "A mean stands where the last half of the run has enough independent values for its error; a value that "
-        "drifts "
-        "has none.{}",
-        needed > 0 ? fmt::format(" The others would need up to {} ps that are like these.", number_text(needed, 2))
-                   : ""));
+    html += paragraph(
+        fmt::format("A mean is given where the last half of the run has enough independent values to estimate its "
+                    "error, and where the value does not drift.{}",
+                    needed > 0 ? fmt::format(" The others would need a run of up to {} ps at the same conditions.",
+                                             number_text(needed, 2))
+                               : ""));
   return zero.empty() ? html
                       : html + "<p class=\"soft\">Zero, or without a value, in all rows: " + zero + ".</p>\n";
 }
@@ -613,6 +610,38 @@ std::vector<std::string> all_warnings(const ReportInput& in) {
 
 // --- The page -----------------------------------------------------------------------------------------------
 
+bool is_zero(const ReportInput& in, const Panel& panel) {
+  return std::all_of(in.log.begin(), in.log.end(), [&](const LogRow& row) {
+    return std::all_of(panel.traces.begin(), panel.traces.end(), [&](const Trace& t) { return t.value(row) == 0; });
+  });
+}
+
+// Of a rope. Charts that would show a line at zero are named instead.
+std::string shape_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
+  std::vector<std::string> charts, zero;
+  const auto add = [&](const Panel& panel) {
+    if (is_zero(in, panel))
+      zero.push_back(panel.title);
+    else
+      charts.push_back(log_figure(in, panel, figures));
+  };
+  std::string html;
+  if (any_internal(in.shells))
+    add(packing_charge());
+  else
+    html = paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
+  add(twist_angle());
+  add(end_twists());
+  charts.push_back(radius_figure(in, sections, figures));
+  add(amplitude(true));
+  add(windings());
+  charts.erase(std::remove(charts.begin(), charts.end(), ""), charts.end());
+  for (std::size_t k = 0; k < charts.size(); k += 2)
+    html += pair_of(charts[k], k + 1 < charts.size() ? charts[k + 1] : "");
+  if (!zero.empty()) html += paragraph(fmt::format("Zero at all times: {}.", fmt::join(zero, ", ")));
+  return html;
+}
+
 std::string log_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   if (in.log.size() < 2)
     return heading("Course of the run") + paragraph(in.log.empty()
@@ -624,18 +653,8 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
   std::string html = loading_part(in, figures) + heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in));
   html += pair_of(bonds, others);
-  const bool packed = any_internal(in.shells);
   if (in.rope) {
-    html += heading("Packing and twist");
-    if (!packed)
-      html +=
-          paragraph("No packing charge: no tube is internal, that is, has six neighbours in the untwisted state.");
-    const std::string charge = packed ? panel(packing_charge()) : "", beta = panel(twist_angle());
-    html += pair_of(charge, beta);
-    const std::string twists = panel(end_twists()), radius = radius_figure(in, sections, figures);
-    html += pair_of(twists, radius) + heading("Buckling of the rope");
-    const std::string deflection = panel(amplitude(true)), turns = panel(windings());
-    html += pair_of(deflection, turns);
+    html += heading("Packing, twist and shape") + shape_part(in, sections, figures);
   } else {
     html += heading("Shape of the tubes");
     const std::string curved = panel(curvature()), twists = panel(tube_twist());

@@ -156,7 +156,7 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
              return true;
            },
            [&](const ParameterSet& s, double x) { return bonds(s, 0, x / s.radius, 0); }),
-       "Twist of one endless tube from its natural twist, up to the collapse of 12 nm."},
+       "Twist of one endless tube from its natural twist, up to the collapse of a tube of 12 nm."},
       {chart_of(
            sets, "Energy against curvature", {"radius times curvature", "1"}, energy,
            [](const ParameterSet& s, double& a, double& b) {
@@ -185,7 +185,7 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
            [](const ParameterSet& s, double x) {
              return line_crossed_energy(s.line->density, s.line->pair_spacing, x * units::degree);
            }),
-       "Two tubes crossed at the distance of rest of parallel ones, by the line law."}};
+       "Two tubes that cross at the equilibrium distance of parallel ones, by the line law."}};
   std::string pair;
   for (std::size_t k = 0; k < std::size(charts); ++k) {
     const std::string svg = chart_svg(charts[k].first);

@@ -34,14 +34,14 @@ std::string with_true_minus(const std::string& text) {
   return !text.empty() && text[0] == '-' ? "−" + text.substr(1) : text;
 }
 
-// Thin spaces between groups of three before the decimal point, from five digits on.
+// Narrow spaces, at which no line breaks, between groups of three before the decimal point, from five digits on.
 std::string grouped(std::string text) {
   const std::size_t begin = !text.empty() && text[0] == '-' ? 1 : 0;
   const std::size_t point = std::min(text.find('.'), text.size());
   if (point - begin < 5) return text;
   for (std::size_t at = point; at > begin + 3;) {
     at -= 3;
-    text.insert(at, "\u2009");
+    text.insert(at, "\u202f");
   }
   return text;
 }

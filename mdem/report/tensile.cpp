@@ -95,14 +95,14 @@ LoadTest load_test(const TensileTest& test) {
 
 const LoadTestKind& tensile_kind() {
   static const LoadTestKind kind = [] {
-    LoadTestKind k{
-        "Strength",
-        "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is counted "
-        "until the stress has fallen to half of its largest value; \"to half\" says in how many runs it has.",
-        "strength",
-        "GPa",
-        {},
-        true};
+    LoadTestKind k{"Strength",
+                   "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is "
+                   "counted until the stress has fallen to half of its largest value; The column \"to half\" "
+                   "counts the runs that went on until then.",
+                   "strength",
+                   "GPa",
+                   {},
+                   true};
     for (const TensileQuantity& q : tensile_quantities) k.columns.push_back(q.column);
     return k;
   }();

@@ -10,9 +10,9 @@ namespace ropewalk {
 
 RunCheckpoint Checkpoints::here() const {
   RunCheckpoint c;
-  c.log = files_.log_mark();
-  c.frames = files_.frames_mark();
+  c.files = files_.marks();
   c.first_energy = moving_.first_energy;
+  c.energy = energy_mark(moving_.simulation);
   c.wall_seconds = clock_.seconds();
   c.control = moving_.control;
   c.on_limit = limits_.on_limit();
@@ -22,6 +22,7 @@ RunCheckpoint Checkpoints::here() const {
 }
 
 void Checkpoints::take_snapshot() {
+  files_.write_events(moving_);
   snapshot_ = std::make_shared<const RunCheckpoint>(here());
   mark_step_ = moving_.state().step;
 }
@@ -39,20 +40,25 @@ void Checkpoints::write(const RunCheckpoint& c) {
   saved_step_ = moving_.state().step;
   fails_ = false;
   limits_.write();
-  files_.write_events(moving_);
   files_.try_again();
   longest_save_ = std::max(longest_save_, steady_seconds() - began);
 }
 
-void Checkpoints::save(StopReason ends_for) {
+// Before a checkpoint knows of them.
+void Checkpoints::bring_files_up_to_date() {
+  files_.write_events(moving_);
   files_.sync();
+}
+
+void Checkpoints::save(StopReason ends_for) {
+  bring_files_up_to_date();
   RunCheckpoint c = with_snapshot();
   c.ends_for = ends_for;
   write(c);
 }
 
 void Checkpoints::save_if_possible() {
-  files_.sync();
+  bring_files_up_to_date();
   try {
     write(with_snapshot());
   } catch (const InputError& e) {
@@ -75,7 +81,7 @@ void Checkpoints::save_here() {
 }
 
 void Checkpoints::keep_here(StopReason ends_for) {
-  files_.sync();
+  bring_files_up_to_date();
   kept_ = with_snapshot();
   kept_.ends_for = ends_for;
 }
@@ -91,11 +97,6 @@ void Checkpoints::save_kept() {
 void Checkpoints::write_results() {
   moving_.simulation.end_relaxation();  // saved as it was; final.csv is of a state at rest
   files_.write_final_state(moving_);
-  write_limits_and_events();
-}
-
-void Checkpoints::write_limits_and_events() {
-  files_.write_events(moving_);
   limits_.write();
 }
 
@@ -110,8 +111,7 @@ void Checkpoints::save_snapshot() const {
 void Checkpoints::save_snapshot_over_later() {
   if (saved_step_ <= moving_.state().step) return;
   RunCheckpoint c = with_snapshot();
-  c.log = snapshot_->log;
-  c.frames = snapshot_->frames;
+  c.files = snapshot_->files;
   write(c);
 }
 

@@ -35,10 +35,8 @@ class Checkpoints {
   // The same, written by save_kept().
   void keep_here(StopReason ends_for);
   void save_kept();
-  // Writes the files that a run leaves at its end beside log and frames: final state, limits, events.
+  // Writes the files that a run leaves at its end beside log, frames and events: final state and limits.
   void write_results();
-  // Without the final state, which takes as long as a checkpoint: for a run that is to go on.
-  void write_limits_and_events();
   // The run broke off: the last good state is saved if it is newer than the checkpoint.
   void save_snapshot() const;
   // The run went back to the snapshot: a checkpoint later than this would know of more than log and frames then
@@ -53,6 +51,7 @@ class Checkpoints {
   RunCheckpoint here() const;
   RunCheckpoint with_snapshot() const;
   void write(const RunCheckpoint& checkpoint);
+  void bring_files_up_to_date();
 
   MovingScene& moving_;
   RunFiles& files_;

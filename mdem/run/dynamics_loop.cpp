@@ -44,7 +44,7 @@ bool DynamicsLoop::advance(const Stretch& t) {
     run_.moving.simulation.steps(t.count, t.logged || t.marked || t.step == run_.schedule.last_step());
   } catch (const NumericalError& e) {
     if (e.shorter_steps() == NumericalError::ShorterSteps::cannot_help ||
-        !run_.rollback.roll_back(e.what(), t.closely))
+        !run_.rollback.roll_back(run_.limits.words_of(e), t.closely))
       throw;
     return false;
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "io/csv_reader.hpp"
 
@@ -23,8 +25,14 @@ std::vector<OutputColumn> event_columns() {
           {"z_nm", "nm", "where"}};
 }
 
+std::string events_header() { return column_names(event_columns()) + "\n"; }
+
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events) {
-  std::string text = column_names(event_columns()) + "\n";
+  return events_header() + event_lines(topology, events);
+}
+
+std::string event_lines(const Topology& topology, const std::vector<TermEvent>& events) {
+  std::string text;
   for (const TermEvent& e : events) {
     const int a = topology.tube_of(e.a), b = topology.tube_of(e.b);
     text += fmt::format("{},{},{},{},{},{},{},{},{}\n", e.time, e.what, a, e.a - topology.tube_begin[a], b,
@@ -87,6 +95,7 @@ StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : 
                "bring the line back");
     return topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element);
   };
+  std::map<std::pair<int, int>, std::deque<std::size_t>> holding;  // by the elements that they join
   each_event(path, [&](CsvReader& csv, const std::string& what) {
     const double time = csv.finite_number(0, "time_ps");
     if (what == "tube broke") {
@@ -94,13 +103,14 @@ StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : 
     } else if (what == "link formed" || what == "link broke") {
       const int a = element_at(csv, 2, "tube", "element", 0), b = element_at(csv, 4, "to_tube", "to_element", 0);
       if (what == "link formed") {
+        holding[{a, b}].push_back(links_.size());
         links_.push_back({a, b, time, std::numeric_limits<double>::infinity()});
         return;
       }
-      const auto held = std::find_if(links_.begin(), links_.end(), [&](const Link& l) {
-        return l.a == a && l.b == b && l.formed <= time && std::isinf(l.broke);
-      });
-      if (held != links_.end()) held->broke = time;
+      const auto held = holding.find({a, b});
+      if (held == holding.end() || held->second.empty()) return;
+      links_[held->second.front()].broke = time;
+      held->second.pop_front();
     }
   });
 }

@@ -1,4 +1,5 @@
-// events.csv: what force terms did in the course of a run (ForceTerm::events), in the order of time.
+// events.csv: what force terms did in the course of a run (ForceTerm::events), in the order of time. It grows with the
+// run as the log does.
 #pragma once
 
 #include <string>
@@ -12,6 +13,8 @@
 namespace ropewalk {
 
 std::vector<OutputColumn> event_columns();
+std::string events_header();
+std::string event_lines(const Topology& topology, const std::vector<TermEvent>& events);
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events);
 
 // Of a tube, since the start.

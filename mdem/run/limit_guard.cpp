@@ -1,8 +1,9 @@
 #include "run/limit_guard.hpp"
 
+#include <fmt/format.h>
+
 #include <limits>
 
-#include "model/error.hpp"
 #include "scene/finer.hpp"
 
 namespace ropewalk {
@@ -44,7 +45,9 @@ StopReason LimitGuard::check(bool with_pressure) {
       topology, moving_.simulation.tubes_now(), moving_.state(), moving_.simulation.list(),
       {drift(), moving_.relaxes() ? std::numeric_limits<double>::quiet_NaN() : moving_.account().kinetic},
       with_pressure);
-  for (const std::string& line : passed) listener_.tell(line);
+  // The heading at its end is that of the limit.
+  for (const std::string& line : passed)
+    if (told_.insert(line.substr(line.rfind(' ') + 1)).second) listener_.tell(line);
   if (!passed.empty()) write();
   if (on_limit_ == OnLimit::stop && !passed.empty()) return StopReason::limit;
   if (on_limit_ != OnLimit::refine || !watch_.finer_would_help()) return StopReason::none;
@@ -52,6 +55,15 @@ StopReason LimitGuard::check(bool with_pressure) {
   if (why.empty()) return StopReason::refine;
   if (!passed.empty()) listener_.tell("not refined: " + why + "; the run goes on as it is");
   return StopReason::none;
+}
+
+std::string LimitGuard::words_of(const NumericalError& e) const {
+  const Topology& topology = moving_.prepared.topology;
+  std::string text = e.what();
+  const std::string number = fmt::format("element {}:", e.element());
+  const std::size_t at = text.find(number);
+  if (e.element() < 0 || e.element() >= topology.elements() || at == std::string::npos) return text;
+  return text.replace(at, number.size(), place_in_words(topology, held(), e.element()) + ":");
 }
 
 bool LimitGuard::would_refine() const {

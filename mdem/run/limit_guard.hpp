@@ -1,8 +1,11 @@
 // The guard of a run's limits: it says which are passed, keeps limits.json, and may end for one.
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
+#include "model/error.hpp"
 #include "run/limit_watch.hpp"
 #include "run/run_files.hpp"
 #include "run/run_schedule.hpp"
@@ -33,6 +36,8 @@ class LimitGuard {
   bool would_refine() const;
   const std::vector<LimitRecord>& records() const { return watch_.records(); }
   const std::vector<Held>& held() const { return watch_.held(); }
+  // The message with tube, element and clamp in place of the element's number in the scene.
+  std::string words_of(const NumericalError& e) const;
   LimitsFile file() const { return {watch_.records(), refinements_}; }
   void write() { files_.write_limits(file()); }
 
@@ -45,6 +50,7 @@ class LimitGuard {
   RunFiles& files_;
   RunListener& listener_;
   LimitWatch watch_;
+  std::set<std::string> told_;  // limits: once, also where the run went back and passed one again
   std::vector<RefinementRecord> refinements_;
 };
 

@@ -6,29 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "run/equilibrium_of.hpp"
 #include "sim/dynamics/end_drives.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/load_steps.hpp"
 #include "sim/statics/stability.hpp"
 
 namespace ropewalk {
-namespace {
-
-Equilibrium::Stability kind_of(StabilityVerdict::Kind kind) {
-  switch (kind) {
-    case StabilityVerdict::Kind::stable:
-      return Equilibrium::Stability::stable;
-    case StabilityVerdict::Kind::unstable:
-      return Equilibrium::Stability::unstable;
-    case StabilityVerdict::Kind::unknown:
-      break;
-  }
-  return Equilibrium::Stability::unknown;
-}
-
-// A wall that has collapsed bears no more, however long it is turned.
-constexpr int enough_overloaded = 60;  // steps
-
-}  // namespace
 
 LoadStepsLoop::LoadStepsLoop(RunParts& run)
     : run_(run), times_(load_step_times(run.moving.simulation.loads(), run.moving.scene.statics.steps)) {
@@ -94,18 +78,9 @@ bool LoadStepsLoop::goes_on() {
 }
 
 void LoadStepsLoop::write(const Statics& end) {
-  const StabilityVerdict verdict = judge_stability(run_.moving.simulation, end);
-  constexpr double per_ns = 1000;  // 1/ps in 1/ns
-  Equilibrium e;
+  Equilibrium e = equilibrium_of(end, judge_stability(run_.moving.simulation, end));
   e.step = run_.step();
   e.time = run_.moving.simulation.time();
-  e.stability = kind_of(verdict.kind);
-  e.growth = verdict.growth * per_ns;
-  e.error = verdict.error * per_ns;
-  e.force = end.largest_force;
-  e.moment = end.largest_torque;
-  e.above = end.relaxed.above;
-  e.saddles = static_cast<int>(end.relaxed.saddles);
   found_.push_back(e);
   if (run_.files.row_step() != run_.step()) run_.write_row();
   if (run_.files.frame_step() != run_.step()) run_.write_frame();
@@ -120,14 +95,12 @@ std::string LoadStepsLoop::load_words(double time) const {
   return fmt::format("{:.4g} ps", time);
 }
 
-std::string LoadStepsLoop::words_of_end(const Statics& end) const {
+std::string LoadStepsLoop::words_of_end(const Statics& end) {
   if (next() == times_.size()) return "";
-  const Simulation& s = run_.moving.simulation;
-  std::string words = fmt::format("; none was found at the next one, {}: ", load_words(times_[next()]));
-  if (const std::string bond = overloaded_bond(s); !bond.empty()) return words + bond;
-  if (end.end == Statics::End::refused)
-    return words + "no step of Newton's method is short enough, as where states of rest end (a fold)";
-  return words + fmt::format("{:.2g} eV/nm are left", end.relaxed.force);
+  const bool by_fire = run_.moving.scene.run.solver == RunOptions::Solver::automatic;
+  const EndWords words = end_words(run_.moving.simulation, end, by_fire, !begins());
+  if (!words.remedy.empty()) run_.remedy = words.remedy + "; equilibria.csv has the states of rest up to here";
+  return fmt::format("; none was found at the next one, {}: {}", load_words(times_[next()]), words.why);
 }
 
 std::string LoadStepsLoop::words_of_curve() const {
@@ -144,7 +117,7 @@ std::string LoadStepsLoop::words_of_curve() const {
   else if (!found_.empty() && count(Equilibrium::Stability::unknown) == 0)
     words += ", all stable";
   if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
-    words += fmt::format("; of {} it cannot be told whether they are stable", unknown);
+    words += fmt::format("; the stability of {} is not known", unknown);
   return words;
 }
 

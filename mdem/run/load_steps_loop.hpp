@@ -25,7 +25,7 @@ class LoadStepsLoop {
   Statics rest_at(double time);
   bool goes_on();
   void write(const Statics& end);
-  std::string words_of_end(const Statics& end) const;
+  std::string words_of_end(const Statics& end);
   std::string words_of_curve() const;
   std::string load_words(double time) const;
 

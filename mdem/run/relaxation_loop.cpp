@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/error.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/stability.hpp"
 
 namespace ropewalk {
@@ -90,14 +91,14 @@ std::string RelaxationLoop::words_of(const Relaxed& end, long max_steps) const {
   return std::isfinite(end.above) ? words + fmt::format("; energy {}, {:.2g} asked for", left, goal.energy) : words;
 }
 
-std::string RelaxationLoop::words_of(const Statics& end, long max_steps) const {
+std::string RelaxationLoop::words_of(const Statics& end, long max_steps) {
   const RunOptions& options = run_.moving.scene.run;
   const Relaxed& r = end.relaxed;
   std::string words;
   if (r.at_rest)
     words = "at rest";
   else if (end.end == Statics::End::refused)
-    words = "not at rest: no step of Newton's method is short enough";
+    words = "not at rest";
   else
     words = end.newton_steps > 0 ? fmt::format("not at rest after {} steps of Newton's method", end.newton_steps)
                                  : fmt::format("not at rest after {} steps", max_steps);
@@ -106,11 +107,10 @@ std::string RelaxationLoop::words_of(const Statics& end, long max_steps) const {
   if (std::isfinite(r.above)) words += fmt::format(", {:.2g} eV above the minimum by estimate", r.above);
   if (!r.at_rest) {
     words += fmt::format("; {:.3g} eV/nm asked for", options.goal.force);
-    const Simulation& s = run_.moving.simulation;
-    const std::string why = overloaded_bond(s);
-    if (!why.empty()) return words + "; " + why;
-    const bool apart = s.interaction().law && s.topology().tubes() > 1 && s.forces().energy.vdw == 0;
-    return apart ? words + "; no two tubes touch" : words;
+    const EndWords more =
+        end_words(run_.moving.simulation, end, options.solver == RunOptions::Solver::automatic, false);
+    run_.remedy = more.remedy;
+    return more.remedy.empty() ? words : words + "; " + more.why;
   }
   if (r.saddles > 0)
     words += fmt::format("; it left {} saddle{} of the energy on the way", r.saddles, r.saddles > 1 ? "s" : "");

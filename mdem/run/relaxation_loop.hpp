@@ -21,7 +21,7 @@ class RelaxationLoop {
   // FIRE alone, or Newton's method with it or without.
   Relaxed relax(long most, const std::function<bool(long)>& progress);
   std::string words_of(const Relaxed& end, long max_steps) const;
-  std::string words_of(const Statics& end, long max_steps) const;
+  std::string words_of(const Statics& end, long max_steps);
   std::string status() const;
 
   RunParts& run_;

@@ -6,16 +6,10 @@ namespace ropewalk {
 
 void Rollback::take_snapshot() {
   checkpoints_.take_snapshot();
-  energy_ = energy_mark(moving_.simulation);
-}
-
-void Rollback::restore(const RunCheckpoint& snapshot) {
-  moving_.simulation.restore(snapshot.simulation);
-  energy_ = energy_mark(moving_.simulation);
 }
 
 bool Rollback::is_sound() const {
-  return moving_.scene.contact.legacy_torque || account_closes(energy_, moving_.simulation);
+  return moving_.scene.contact.legacy_torque || account_closes(checkpoints_.snapshot()->energy, moving_.simulation);
 }
 
 bool Rollback::roll_back(const std::string& why, bool looked_closely) {
@@ -33,7 +27,7 @@ bool Rollback::roll_back(const std::string& why, bool looked_closely) {
   limits_.roll_back_to(c.limits, simulation.step_count());
   stops_.cut(simulation.step_count());
   checkpoints_.save_snapshot_over_later();
-  files_.cut(c.log, c.frames);
+  files_.cut(c.files);
   if (!looked_closely) return true;
   // The remedy, after the semicolon of the message, is left out: a shorter step is what the run takes now.
   listener_.tell(fmt::format("{:.4g} ps: {}; back to {:.4g} ps, on with steps of {:.4g} fs", time,

@@ -22,8 +22,6 @@ class Rollback {
 
   // The present state is good.
   void take_snapshot();
-  // The state that was good when the run was stopped. The simulation stands there afterwards.
-  void restore(const RunCheckpoint& snapshot);
   // A model that gains energy has no account to close.
   bool is_sound() const;
   // The next steps are shorter, or looked at more closely if they have not been. False where steps are as short as
@@ -37,7 +35,6 @@ class Rollback {
   StopWatch& stops_;
   Checkpoints& checkpoints_;
   RunListener& listener_;
-  EnergyMark energy_;  // at the snapshot
 };
 
 }  // namespace ropewalk

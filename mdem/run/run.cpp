@@ -11,7 +11,6 @@
 #include "run/dynamics_loop.hpp"
 #include "run/load_steps_loop.hpp"
 #include "run/pending_files.hpp"
-#include "run/plan_check.hpp"
 #include "run/refined_run.hpp"
 #include "run/relaxation_loop.hpp"
 #include "run/results.hpp"
@@ -21,15 +20,6 @@
 
 namespace ropewalk {
 namespace {
-
-// The message with tube, element and clamp in place of the element's number in the scene.
-std::string words_with_place(const NumericalError& e, const Topology& topology, const std::vector<Held>& held) {
-  std::string text = e.what();
-  const std::string number = fmt::format("element {}:", e.element());
-  const std::size_t at = text.find(number);
-  if (e.element() < 0 || e.element() >= topology.elements() || at == std::string::npos) return text;
-  return text.replace(at, number.size(), place_in_words(topology, held, e.element()) + ":");
-}
 
 StopReason go_loop(RunParts& parts) {
   if (parts.moving.scene.statics.steps > 0) return LoadStepsLoop(parts).go();
@@ -108,12 +98,12 @@ RunResult Run::finish() {
   parts_.checkpoints.write_results();
   write_end(parts_.at_rest ? "finished" : "not relaxed", parts_.reason);
   RunResult r = result(parts_.at_rest ? RunEnd::finished : RunEnd::not_relaxed, parts_.reason);
+  r.remedy = parts_.remedy;
   r.network = network_words(parts_.moving.scene, parts_.moving.simulation.tubes_now(), parts_.state());
   if (r.missing.empty()) {
     const bool whole =
         parts_.moving.relaxes() || !parts_.reason.empty() || parts_.step() >= parts_.schedule.scene_end();
     if (whole) r.expected = judge(parts_.moving.scene.expected, r.directory);
-    r.plan = plan_words(r.directory, parts_.moving.scene, read_manifest(r.directory.manifest()));
     add_results(r);
   } else {
     r.end = RunEnd::incomplete;
@@ -132,7 +122,7 @@ RunResult Run::stopped_at_limit() {
 }
 
 RunResult Run::stopped(RunEnd end) {
-  parts_.checkpoints.write_limits_and_events();  // batch systems wait for some seconds only
+  write_limits();  // no final state, which takes as long as a checkpoint: batch systems wait for some seconds only
   const std::string reason =
       fmt::format("stopped {} at {:.3f} ps", parts_.asked_by, parts_.moving.simulation.time());
   write_manifest("interrupted", reason);
@@ -165,9 +155,13 @@ RunResult Run::refined() {
 
 RunResult Run::failed(const NumericalError& e) {
   write_limits();
-  parts_.files.write_events(parts_.moving);
+  try {
+    parts_.files.write_events(parts_.moving);
+  } catch (const InputError& no_room) {
+    parts_.listener.tell(fmt::format("{}; the last events are missing there", no_room.what()));
+  }
   parts_.files.write_failed_state(parts_.moving);
-  const std::string why = words_with_place(e, parts_.moving.prepared.topology, parts_.limits.held());
+  const std::string why = parts_.limits.words_of(e);
   write_end("failed", why);
   RunResult r = result(RunEnd::failed, why);
   add_results(r);

@@ -28,6 +28,7 @@ struct RunResult {
   RunEnd end = RunEnd::finished;
   RunDirectory directory;
   std::string reason;                // in words
+  std::string remedy;                // of a relaxation that resuming does not bring to rest
   std::string passed;                // limits, in words
   std::string beyond_since;          // since when and by which limit, a sentence; empty: within all limits
   std::string worst;                 // how far it was passed, in words
@@ -35,7 +36,6 @@ struct RunResult {
   std::vector<std::string> results;  // a sentence each
   std::string damping;               // its part of the lost energy, in words
   std::string network;               // of a film at its end, in words
-  std::string plan;                  // planned and seen errors, in words
   std::vector<Judgement> expected;   // of the [[expect]] tables
   std::string missing;               // files
   std::int64_t steps = 0;

@@ -2,19 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
 
+#include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
+#include "io/running_hash.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
-#include "sim/state/byte_archive.hpp"
 #include "version.hpp"
 
 namespace ropewalk {
@@ -22,24 +26,91 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* title = "ROPEWALK-CHECKPOINT 8 ";
-constexpr std::size_t hash_length = 16;
+constexpr const char* title = "ROPEWALK-CHECKPOINT 9 ";
+constexpr std::size_t hash_length = 16, block_size = 1 << 20;
 
-struct Writer : ByteWriter {
-  using ByteWriter::operator();
+// As many of these bytes as the file has from here on.
+std::size_t read_some(const std::string& path, int file, char* to, std::size_t count) {
+  std::size_t have = 0;
+  while (have < count) {
+    const ssize_t n = uninterrupted([&] { return ::read(file, to + have, count - have); });
+    if (n < 0) throw file_error(path, "cannot be read", errno);
+    if (n == 0) break;
+    have += static_cast<std::size_t>(n);
+  }
+  return have;
+}
+
+// Both go through the file piece by piece: a checkpoint of a million elements has 400 MB.
+class Writer {
+ public:
+  explicit Writer(Draft& file) : file_(file) {}
+  template <class T>
+  void operator()(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add({reinterpret_cast<const char*>(&value), sizeof value});
+  }
   void operator()(const std::string& text) {
     (*this)(static_cast<std::uint64_t>(text.size()));
-    bytes += text;
+    add(text);
   }
+  // Writes what is left. The hash of all.
+  std::string end() {
+    flush();
+    return hash_.hex();
+  }
+
+ private:
+  void add(std::string_view bytes) {
+    if (small_.size() + bytes.size() > block_size) flush();
+    if (bytes.size() > block_size)
+      put(bytes);
+    else
+      small_ += bytes;
+  }
+  void flush() {
+    put(small_);
+    small_.clear();
+  }
+  void put(std::string_view bytes) {
+    hash_.add(bytes);
+    file_.write(bytes);
+  }
+
+  Draft& file_;
+  RunningHash hash_;
+  std::string small_;
 };
 
-struct Reader : ByteReader {
-  using ByteReader::operator();
+// Of the bytes of an open file from here to its end.
+class Reader {
+ public:
+  Reader(const std::string& path, int file, std::uint64_t bytes) : path_(path), file_(file), left_(bytes) {}
+  template <class T>
+  void operator()(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    take(reinterpret_cast<char*>(&value), sizeof value);
+  }
   void operator()(std::string& text) {
     std::uint64_t size = 0;
     (*this)(size);
-    text = take(size);
+    if (size > left_) ends_too_early();
+    text.resize(size);
+    take(text.data(), size);
   }
+  void take(char* to, std::size_t count) {
+    if (count > left_) ends_too_early();
+    left_ -= count;
+    if (read_some(path_, file_, to, count) < count) ends_too_early();
+  }
+  std::uint64_t left() const { return left_; }
+
+ private:
+  [[noreturn]] static void ends_too_early() { throw std::runtime_error("the checkpoint ends too early"); }
+
+  const std::string& path_;
+  int file_;
+  std::uint64_t left_;
 };
 
 // One list for both ways.
@@ -57,13 +128,14 @@ void visit_origin(Archive& archive, Origin& o) {
 
 template <class Archive, class Checkpoint>
 void visit_state(Archive& archive, Checkpoint& c) {
-  for (auto* file : {&c.log, &c.frames}) {
+  for (auto* file : {&c.files.log, &c.files.frames, &c.files.events}) {
     archive(file->bytes);
     archive(file->tail_from);
     archive(file->tail);
     archive(file->step);
   }
   archive(c.first_energy);
+  archive(c.energy);
   archive(c.wall_seconds);
   archive(c.control);
   archive(c.on_limit);
@@ -80,19 +152,30 @@ RunCheckpoint state_from(Reader& read, const std::string& path) {
   return c;
 }
 
+std::string hash_of_rest(const std::string& path, int file) {
+  RunningHash hash;
+  std::string block(block_size, '\0');
+  while (const std::size_t count = read_some(path, file, block.data(), block.size()))
+    hash.add(std::string_view(block).substr(0, count));
+  return hash.hex();
+}
+
 // Empty where the file is damaged or of another version.
 std::optional<RunCheckpoint> checkpoint_from(const std::string& path) {
-  const std::string bytes = read_file(path);
+  const Descriptor file = opened_to_read(path);
+  const auto size = static_cast<std::uint64_t>(fs::file_size(path));
   const std::size_t begin = std::strlen(title), head = begin + hash_length + 1;
-  if (bytes.size() <= head || bytes.compare(0, begin, title) != 0) return {};
-  const std::string_view body = std::string_view(bytes).substr(head);
-  if (bytes.substr(begin, hash_length) != hash_hex(body)) return {};
+  std::string first(head, '\0');
+  if (size <= head || read_some(path, file.get(), first.data(), head) < head || first.compare(0, begin, title) != 0 ||
+      first.substr(begin, hash_length) != hash_of_rest(path, file.get()))
+    return {};
+  if (::lseek(file.get(), static_cast<off_t>(head), SEEK_SET) < 0) throw file_error(path, "cannot be read", errno);
   try {
-    Reader read{{body}};
+    Reader read(path, file.get(), size - head);
     RunOrigin origin;
     visit_origin(read, origin);
     RunCheckpoint c = state_from(read, path);
-    if (!read.bytes.empty()) c.snapshot = std::make_shared<const RunCheckpoint>(state_from(read, path));
+    if (read.left() > 0) c.snapshot = std::make_shared<const RunCheckpoint>(state_from(read, path));
     c.origin = origin;
     return c;
   } catch (const std::runtime_error&) {
@@ -105,11 +188,15 @@ struct StoredCheckpoint {
   std::optional<RunCheckpoint> content;  // none: damaged
 };
 
-// The checkpoints that are there, the newest first.
-std::vector<StoredCheckpoint> stored_checkpoints(const RunDirectory& dir) {
+// Reads the checkpoints that are there, the newest first, until one is as it has to be. All that were read.
+std::vector<StoredCheckpoint> read_until(const RunDirectory& dir,
+                                         const std::function<bool(const RunCheckpoint&)>& will_do) {
   std::vector<StoredCheckpoint> all;
-  for (const std::string& path : {dir.checkpoint(), dir.checkpoint_before()})
-    if (fs::exists(path)) all.push_back({path, checkpoint_from(path)});
+  for (const std::string& path : {dir.checkpoint(), dir.checkpoint_before()}) {
+    if (!fs::exists(path)) continue;
+    all.push_back({path, checkpoint_from(path)});
+    if (all.back().content && will_do(*all.back().content)) break;
+  }
   return all;
 }
 
@@ -132,8 +219,7 @@ std::string other_version(const RunDirectory& dir) {
 void refuse_without_checkpoint(const RunDirectory& dir, const std::vector<StoredCheckpoint>& all) {
   for (const StoredCheckpoint& s : all)
     if (s.content) return;
-  if (all.empty())
-    throw InputError({dir.checkpoint(), 0, ""}, "there is no checkpoint", "start the run with `ropewalk run`");
+  if (all.empty()) refuse_without_checkpoint(dir);
   if (const std::string version = other_version(dir); !version.empty())
     throw InputError(
         {dir.checkpoint(), 0, ""},
@@ -170,6 +256,11 @@ FileMark whole_frames(const RunDirectory& dir, std::uint64_t most) {
 
 }  // namespace
 
+void refuse_without_checkpoint(const RunDirectory& dir) {
+  if (!has_checkpoint(dir))
+    throw InputError({dir.checkpoint(), 0, ""}, "there is no checkpoint", "start the run with `ropewalk run`");
+}
+
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
   RunOrigin o;
   o.scene = scene.text;
@@ -186,66 +277,85 @@ RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {
 }
 
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint) {
-  // Room is reserved, since a growing string takes up to twice its size.
-  std::size_t room = 1 << 18;
-  for (const RunCheckpoint* c = &checkpoint; c; c = c->snapshot.get()) room += c->simulation.size();
-  Writer write;
-  write.bytes.reserve(room);
-  write.bytes += title + std::string(hash_length, '0') + "\n";
-  const std::size_t head = write.bytes.size();
+  Draft file(dir.checkpoint());
+  file.write(title + std::string(hash_length, '0') + "\n");
+  Writer write(file);
   visit_origin(write, checkpoint.origin);
   for (const RunCheckpoint* c = &checkpoint; c; c = c->snapshot.get()) {
     visit_state(write, *c);
     write(limits_json(c->limits));
   }
-  const std::string hash = hash_hex(std::string_view(write.bytes).substr(head));
-  write.bytes.replace(std::strlen(title), hash_length, hash);
-  write_file_atomically(dir.checkpoint(), write.bytes, dir.checkpoint_before());
+  file.patch(std::strlen(title), write.end());
+  file.replace_keeping(dir.checkpoint_before());
 }
 
 RunCheckpoint read_checkpoint(const RunDirectory& dir) {
-  std::vector<StoredCheckpoint> all = stored_checkpoints(dir);
+  std::vector<StoredCheckpoint> all = read_until(dir, [](const RunCheckpoint&) { return true; });
   refuse_without_checkpoint(dir, all);
   return std::move(*(all.front().content ? all.front() : all.back()).content);
 }
 
+namespace {
+
+bool reaches_events(const RunDirectory& dir, const FileMarks& marks) {
+  return marks.events.bytes == 0 || reaches(dir.events(), marks.events);
+}
+
+void do_without_what_is_lost(const RunDirectory& dir, ResumePoint& point) {
+  FileMarks& marks = point.checkpoint.files;
+  if (!reaches(dir.frames(), marks.frames)) {
+    marks.frames = whole_frames(dir, marks.frames.bytes);
+    point.remarks.push_back(marks.frames.bytes == 0
+                                ? "frames begin anew here; those before are lost"
+                                : "frames go on behind the last whole one; those between are lost");
+  }
+  if (!reaches_events(dir, marks)) {
+    marks.events = {};
+    point.remarks.push_back("events begin anew here; those before are lost");
+  }
+  if (!point.checkpoint.snapshot) return;
+  RunCheckpoint snapshot = *point.checkpoint.snapshot;
+  if (snapshot.files.frames.bytes > marks.frames.bytes) snapshot.files.frames = marks.frames;
+  if (snapshot.files.events.bytes > marks.events.bytes) snapshot.files.events = marks.events;
+  point.checkpoint.snapshot = std::make_shared<const RunCheckpoint>(std::move(snapshot));
+}
+
+}  // namespace
+
 ResumePoint find_resume_point(const RunDirectory& dir) {
-  std::vector<StoredCheckpoint> all = stored_checkpoints(dir);
+  std::vector<StoredCheckpoint> all = read_until(dir, [&](const RunCheckpoint& c) {
+    return reaches(dir.log(), c.files.log) && reaches(dir.frames(), c.files.frames) && reaches_events(dir, c.files);
+  });
   refuse_without_checkpoint(dir, all);
   ResumePoint out;
-  const StoredCheckpoint *with_all = nullptr, *with_log = nullptr, *newest = nullptr;
-  for (const StoredCheckpoint& s : all) {
+  StoredCheckpoint *with_all = nullptr, *with_log = nullptr, *newest = nullptr;
+  for (StoredCheckpoint& s : all) {
     if (!s.content) {
       out.remarks.push_back(fmt::format("{} is damaged", s.path));
       continue;
     }
     if (!newest) newest = &s;
-    const bool log = reaches(dir.log(), s.content->log), frames = reaches(dir.frames(), s.content->frames);
+    const FileMarks& marks = s.content->files;
+    const bool log = reaches(dir.log(), marks.log), frames = reaches(dir.frames(), marks.frames),
+               events = reaches_events(dir, marks);
     if (log && !with_log) with_log = &s;
-    if (log && frames && !with_all) with_all = &s;
+    if (log && frames && events && !with_all) with_all = &s;
     for (const auto& [path, whole, mark] :
-         {std::tuple{dir.log(), log, s.content->log}, std::tuple{dir.frames(), frames, s.content->frames}})
+         {std::tuple{dir.log(), log, marks.log}, std::tuple{dir.frames(), frames, marks.frames},
+          std::tuple{dir.events(), events, marks.events}})
       if (!whole && newest == &s) out.remarks.push_back(fmt::format("{} {}", path, size_words(path, mark)));
     if (with_all) break;
   }
-  const StoredCheckpoint* chosen = with_all ? with_all : with_log;
+  StoredCheckpoint* const chosen = with_all ? with_all : with_log;
   if (!chosen)
-    throw InputError({dir.log(), 0, ""}, size_words(dir.log(), newest->content->log),
+    throw InputError({dir.log(), 0, ""}, size_words(dir.log(), newest->content->files.log),
                      "bring it back from a copy, or start the run anew with `ropewalk run`");
   out.path = chosen->path;
-  out.checkpoint = *chosen->content;
+  out.checkpoint = std::move(*chosen->content);
   if (chosen != &all.front())
     out.remarks.push_back(fmt::format("the run goes on from the checkpoint before, {}", chosen->path));
   if (with_all) return out;
-  RunCheckpoint& c = out.checkpoint;
-  c.frames = whole_frames(dir, c.frames.bytes);
-  if (c.snapshot && c.snapshot->frames.bytes > c.frames.bytes) {
-    RunCheckpoint snapshot = *c.snapshot;
-    snapshot.frames = c.frames;
-    c.snapshot = std::make_shared<const RunCheckpoint>(snapshot);
-  }
-  out.remarks.push_back(c.frames.bytes == 0 ? "frames begin anew here; those before are lost"
-                                            : "frames go on behind the last whole one; those between are lost");
+  do_without_what_is_lost(dir, out);
   return out;
 }
 

@@ -30,9 +30,15 @@ struct RunOrigin {
 // The origin of a run in this directory by this program, without a device.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);
 
+// How far files had come. No bytes of events: there was no file.
+struct FileMarks {
+  FileMark log, frames, events;
+};
+
 struct RunCheckpoint {
-  FileMark log, frames;     // the files are cut back to these
+  FileMarks files;          // they are cut back to these
   double first_energy = 0;  // eV, total at the start: origin of the balance
+  EnergyMark energy;        // of the state
   double wall_seconds = 0;
   StepControl control;
   OnLimit on_limit = OnLimit::warn;
@@ -46,11 +52,14 @@ struct RunCheckpoint {
 // The one that was there before is kept as checkpoint-before.bin.
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 
+// Throws InputError where there is none; one that is there may be damaged.
+void refuse_without_checkpoint(const RunDirectory& dir);
+
 // The newest that is whole. Throws InputError where there is none.
 RunCheckpoint read_checkpoint(const RunDirectory& dir);
 
-// The place where a run can go on: the newest checkpoint that is whole and whose log and frames are there. Frames
-// that are missing or damaged are done without. `remarks`: the faults found, a sentence each. Throws InputError
+// The place where a run can go on: the newest checkpoint that is whole and whose log, frames and events are there.
+// Frames and events that are missing or damaged are done without. `remarks`: the faults found, a sentence each. Throws InputError
 // where there is no whole checkpoint, or none whose log is there.
 struct ResumePoint {
   std::string path;

@@ -33,7 +33,6 @@ struct RunDirectory {
   std::string state_memory() const { return file("state-memory.csv"); }
   std::string report() const { return file("report.html"); }
   std::string view() const { return file("view.html"); }
-  std::string plan_check() const { return file("plan-check.csv"); }
   std::string equilibria() const { return file("equilibria.csv"); }
   std::string events() const { return file("events.csv"); }
   std::string limits() const { return file("limits.json"); }

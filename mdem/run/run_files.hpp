@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "io/equilibria.hpp"
@@ -22,19 +23,23 @@ class RunFiles {
   // From now on no other process writes in the directory.
   void hold(DirectoryLock lock) { lock_ = std::move(lock); }
 
-  // Opens log and frames, made or cut back to these marks.
-  void open(FrameFormat format, const FileMark& log, const FileMark& frames, std::size_t expected_frames);
+  // Opens log, frames and events, made or cut back to these marks.
+  void open(FrameFormat format, const FileMarks& marks, std::size_t expected_frames);
   void write_header();
   void write_row(const LogRow& row, std::int64_t step);
   void write_frame(const MovingScene& moving);
   // Steps of the last ones; -1: not known.
   std::int64_t row_step() const { return row_step_; }
   std::int64_t frame_step() const { return frame_step_; }
+  // What has happened in the simulation since the last call, which then forgets it. To be called before its state is
+  // kept, since that does not have it.
+  void write_events(MovingScene& moving);
+  // That a tube broke, of what this process has written; null: none.
+  const TermEvent* first_break() const { return first_break_ ? &*first_break_ : nullptr; }
   // Removes whatever was written after these marks.
-  void cut(const FileMark& log, const FileMark& frames);
-  FileMark log_mark() const;
-  FileMark frames_mark() const;
-  // Puts log and frames on the disk; called before a checkpoint that refers to them.
+  void cut(const FileMarks& marks);
+  FileMarks marks() const;
+  // Puts log, frames and events on the disk; called before a checkpoint that refers to them.
   void sync();
 
   // Throws InputError where it cannot be written; the checkpoint before it then stands.
@@ -43,8 +48,6 @@ class RunFiles {
   void write_limits(const LimitsFile& limits) { pending_.write(dir_.limits(), limits_json(limits)); }
   void write_manifest(const Manifest& manifest) { pending_.write(dir_.manifest(), manifest_json(manifest)); }
   void write_equilibria(const Equilibria& all) { pending_.write(dir_.equilibria(), equilibria_csv(all)); }
-  // Where a force term has a history.
-  void write_events(const MovingScene& moving);
   void write_final_state(const MovingScene& moving) { write_state(dir_.final_state(), moving); }
   void write_failed_state(const MovingScene& moving) { write_state(dir_.failed_state(), moving); }
   void write_report(std::string page) { pending_.write(dir_.report(), std::move(page)); }
@@ -58,6 +61,9 @@ class RunFiles {
   DirectoryLock lock_;
   std::unique_ptr<GrowingFile> log_;
   std::unique_ptr<FrameWriter> frames_;
+  std::unique_ptr<GrowingFile> events_;  // null: nothing has happened yet
+  std::optional<TermEvent> first_break_;
+  std::uint64_t first_break_at_ = 0;  // bytes of the file before it
   std::int64_t row_step_ = -1, frame_step_ = -1;
   PendingFiles pending_;
 };

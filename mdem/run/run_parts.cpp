@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "io/run_results.hpp"
 #include "model/error.hpp"
-#include "run/events_file.hpp"
 #include "run/use_device.hpp"
 
 namespace ropewalk {
@@ -44,12 +42,9 @@ void RunParts::write_row() {
 
 void RunParts::tell_first_break(const LogRow& before) {
   if (told_break || !(last_row["bonds_broken"] > 0)) return;
-  std::vector<TermEvent> breaks = moving.simulation.term_events();
-  breaks.erase(std::remove_if(breaks.begin(), breaks.end(), [](const TermEvent& e) { return !is_break(e); }),
-               breaks.end());
-  if (breaks.empty()) return;
-  const TermEvent& first = *std::min_element(
-      breaks.begin(), breaks.end(), [](const TermEvent& a, const TermEvent& b) { return a.time < b.time; });
+  files.write_events(moving);
+  if (!files.first_break()) return;
+  const TermEvent first = *files.first_break();
   const double turned = rotation_at({before, last_row}, first.time);
   listener.tell(fmt::format("the first tube broke at {:.4g} ps{}: {}; events.csv lists every break", first.time,
                             std::fabs(turned) >= 1 ? fmt::format(", {:.4g}°", turned) : "",

@@ -48,6 +48,7 @@ struct RunParts {
   bool told_break = false;                // of the tubes
   std::string asked_by;                   // who asked for an end
   std::string reason;                     // of the end, in words
+  std::string remedy;                     // where a relaxation does not come to rest; empty: resume it
   bool at_rest = true;                    // false: a relaxation ran out of steps
 };
 

@@ -64,7 +64,7 @@ void Run::begin_files() {
   p.checkpoints.origin.device = device_name();
   p.checkpoints.origin.own_forces = own_forces_of(p.settings);
   write_manifest("running");  // before the checkpoint: it has the name of the scene
-  p.files.open(scene.run.frames_format, {}, {}, p.schedule.expected_frames());
+  p.files.open(scene.run.frames_format, {}, p.schedule.expected_frames());
   p.files.write_header();
   p.write_row();
   p.write_frame();
@@ -78,7 +78,6 @@ void Run::restore(RunCheckpoint c) {
   RunParts& p = parts_;
   const RunDirectory& dir = p.files.directory();
   try {
-    if (c.snapshot) p.rollback.restore(*c.snapshot);
     p.moving.simulation.restore(c.simulation);
   } catch (const std::runtime_error& e) {
     throw InputError({dir.checkpoint(), 0, ""}, e.what(), "start the run anew with `ropewalk run`");
@@ -90,10 +89,10 @@ void Run::restore(RunCheckpoint c) {
   p.checkpoints.origin = origin_of(dir, p.moving.scene);
   p.checkpoints.origin.device = device_name();
   p.checkpoints.origin.own_forces = own_forces_of(p.settings);
-  p.files.open(p.moving.scene.run.frames_format, c.log, c.frames, p.schedule.expected_frames());
+  p.files.open(p.moving.scene.run.frames_format, c.files, p.schedule.expected_frames());
   p.limits.inherit(c.limits, p.state().step);
-  const std::vector<TermEvent> events = p.moving.simulation.term_events();
-  p.told_break = std::any_of(events.begin(), events.end(), is_break);
+  const std::vector<TubeBreak> breaks = tube_breaks(dir.events());
+  p.told_break = std::any_of(breaks.begin(), breaks.end(), [](const TubeBreak& b) { return b.time_ps > 0; });
   if (!p.stops.empty())
     for (const LogRow& earlier : read_log(dir.log())) p.stops.add(earlier);
   // A run that a rule has ended stands at its last row, and is not taken further.
@@ -112,8 +111,7 @@ void Run::restore(RunCheckpoint c) {
     p.rollback.take_snapshot();
   // Files of the earlier end; the next end writes them again.
   std::error_code ignored;
-  for (const std::string& path : {dir.final_state(), dir.final_memory(), dir.plan_check()})
-    std::filesystem::remove(path, ignored);
+  for (const std::string& path : {dir.final_state(), dir.final_memory()}) std::filesystem::remove(path, ignored);
 }
 
 // The checkpoint may be of a scene with another time step, which then stays.

@@ -28,7 +28,7 @@ void warn_of_long_elements(const ParameterSet& set, double length, std::vector<s
   if (error > 0.01)
     warnings.push_back(fmt::format(
         "Elements of {:.3g} nm of {} are bent by {:.2f} rad each where the tube kinks, and its stiffness is "
-        "{:.0f} % off there: take shorter ones where tubes bend strongly.",
+        "{:.0f} % off there. Take shorter elements where tubes bend strongly.",
         length, set.name, bend, 100 * error));
 }
 
@@ -81,7 +81,7 @@ void warn_of_cutoff(const Scene& scene, const ContactLaw* law, std::vector<std::
   for (std::size_t k = 0; k < own.size(); ++k) left = std::min(left, now[k].binding / own[k].binding);
   if (left < 0.99)
     warnings.push_back(
-        fmt::format("With contact.cutoff_nm = {:.4g} two parallel tubes bind with {:.0f} % of what the "
+        fmt::format("With contact.cutoff_nm = {:.4g} two parallel tubes bind with {:.0f} % of the energy that the "
                     "law of the set gives.",
                     scene.contact.cutoff, 100 * left));
 }
@@ -94,7 +94,7 @@ void warn_of_unlike_tubes(const Scene& scene, std::vector<std::string>& warnings
   if (most->radius < 1.05 * least->radius) return;
   warnings.push_back(fmt::format(
       "Tubes of {:.3g} and {:.3g} nm radius: the packing charge Q and the voids go by the spacing of the widest "
-      "tubes, and mean nothing between narrow ones; Q_delaunay needs no distance.",
+      "tubes, and are meaningless for narrow ones. Q_delaunay needs no distance.",
       least->radius, most->radius));
 }
 
@@ -123,10 +123,11 @@ void warn_of_collapsing_moment(const Scene& scene, const Prepared& p, std::vecto
   const std::optional<EndMoment> load = end_moment(end_drives(p.loads, p.topology));
   const double moment = load ? load->of_each(p.topology.strands()) : 0;
   if (scene.bond.anharmonic && moment > most)
-    warnings.push_back(fmt::format(
-        "A moment of {:.4g} nN nm per tube is more than {} bears before its wall collapses, {:.4g}: beyond "
-        "that only what the rope stores otherwise holds it, and its tubes are flat ribbons.",
-        moment / units::nN_nm, scene.sets[weakest].name, most / units::nN_nm));
+    warnings.push_back(
+        fmt::format("The moment of {:.4g} nN nm on each tube is more than the {:.4g} nN nm at which the wall of {} "
+                    "collapses. From "
+                    "there on only stretch and contact resist it, and real tubes would be flat ribbons.",
+                    moment / units::nN_nm, most / units::nN_nm, scene.sets[weakest].name));
 }
 
 // Warns of a radius for Q that reaches the second shell of the packing.
@@ -174,13 +175,15 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
   const ContactLaw* law = p.interaction.law.get();
   std::vector<std::string> warnings;
   if (scene.contact.legacy_torque)
-    warnings.push_back("This run leaves out the torque that the published force code leaves out: it gains energy.");
+    warnings.push_back(
+        "This run leaves out the torque that the published force code leaves out (legacy_torque), so that the rope "
+        "gains energy.");
   for (const auto& drive : scene.drives) drive->warn(scene, p.topology, p.loads, warnings);
   warn_of_collapsing_moment(scene, p, warnings);
   if (scene.run.mass_scale != 1)
-    warnings.push_back(
-        fmt::format("Masses are {:.4g} times those of the tubes: times, velocities and waves are not theirs.",
-                    scene.run.mass_scale));
+    warnings.push_back(fmt::format(
+        "Masses are {:.4g} times those of the tubes: times, velocities and waves are not those of real tubes.",
+        scene.run.mass_scale));
   warn_of_viscosity_per_pair(scene, warnings);
   if (scene.damping.local > 0)
     warnings.push_back("PFC local damping depends on the frame and does not conserve momentum.");
@@ -218,11 +221,12 @@ std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topol
   const std::string what =
       "Registry, how the lattices of two neighbouring tubes lie on one another, is left out: tubes are smooth. ";
   if (deviation < 0)
-    return {what +
-            "How much it counts for these tubes stands in no number of their parameter sets; of other tubes the "
-            "binding energy has a standard deviation of 0.2 to 3 % over all registries, and twisting energies of "
-            "small ropes "
-            "move by some per cent at small angles."};
+    return {
+        what +
+        "The parameter sets of this scene do not say how much that matters. For other tubes the binding energy has "
+        "a "
+        "standard deviation of 0.2 to 3 % over all registries, and the twisting energy of small ropes changes by "
+        "some per cent at small angles."};
   std::vector<std::string> out = {
       what +
       fmt::format("Over all registries the binding energy of two real tubes has a standard deviation of {:.2g} % "
@@ -235,19 +239,21 @@ std::vector<std::string> error_bars_of(const Scene& scene, const Topology& topol
   if (alike == 0) return out;
   const auto of_bonds = [&](double energy) { return 100 * energy / bonds; };
   std::string words = fmt::format(
-      "At the end that is ± {:.3g} eV of {:.5g} eV van der Waals energy if every pair of neighbours lies alike",
+      "At the end of this run the error is ± {:.3g} eV of {:.5g} eV of van der Waals energy if all pairs of "
+      "neighbours "
+      "have the same registry",
       alike, last["vdw_eV"]);
   if (scene.source->is_parallel()) {
     // No more circles than this touch one another in a plane.
     const double pairs = std::max(1.0, std::floor(3 * n - std::sqrt(12 * n - 3))),
                  random = alike / std::sqrt(pairs);
-    words +=
-        fmt::format(", and ± {:.3g} eV if the {:.0f} pairs of a close-packed rope of as many tubes lie at random",
-                    random, pairs);
+    words += fmt::format(
+        ", and ± {:.3g} eV if the {:.0f} pairs of a close-packed rope of this size have random registries", random,
+        pairs);
     if (bonds > 0)
-      words += fmt::format(": {:.2g} and {:.2g} % of what the bonds hold", of_bonds(alike), of_bonds(random));
+      words += fmt::format(": {:.2g} and {:.2g} % of the energy of the bonds", of_bonds(alike), of_bonds(random));
   } else if (bonds > 0) {
-    words += fmt::format(": {:.2g} % of what the bonds hold", of_bonds(alike));
+    words += fmt::format(": {:.2g} % of the energy of the bonds", of_bonds(alike));
   }
   out.push_back(words + ".");
   return out;

@@ -22,7 +22,6 @@ void print_results(const RunResult& r) {
   if (!r.passed.empty()) print(fmt::format("Limits passed: {}\n", r.passed));
   if (!r.network.empty()) print("At the end " + r.network + ".\n");
   if (!r.damping.empty()) print(r.damping + "\n");
-  if (!r.plan.empty()) print(r.plan + "\n");
   for (const Judgement& j : r.expected) print(j.words + "\n");
   const std::string time = r.relaxes ? "" : fmt::format("{:.1f} ps, ", r.time_ps);
   print(fmt::format("{}{} steps, {}{:.0f} s. Report: {}\n", r.reason.empty() ? "" : r.reason + "\n", r.steps, time,
@@ -56,7 +55,9 @@ int tell_end(const RunResult& r) {
       return failed_or_incomplete;
     case RunEnd::not_relaxed:
       print_results(r);
-      tell(fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", r.reason, dir));
+      tell(r.remedy.empty()
+               ? fmt::format("{}; go on with `ropewalk resume {}`, or raise run.max_steps", r.reason, dir)
+               : fmt::format("{}; {}", r.reason, r.remedy));
       return not_relaxed;
     case RunEnd::at_limit:
       print_news(r);

@@ -1,11 +1,10 @@
 // A drive acts on the elements of a scene from outside: one table of its file, such as [[grip]] or [thermostat].
-// Reader, model, refinement, planner, reports and the export to LAMMPS ask each drive through this interface, in
+// Reader, model, refinement, forecasts, reports and the export to LAMMPS ask each drive through this interface, in
 // one loop each. drive_kind.hpp is the register of drives.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,10 +88,6 @@ class Drive {
   virtual std::string why_not_lengthened() const { return why_not_split(); }
   // The key of the scene, or the table, that LAMMPS cannot carry; empty: it can.
   virtual std::string not_for_lammps() const { return ""; }
-  // The keys with which it does the same in this part of the time, and their values; none: it cannot.
-  virtual std::optional<std::vector<std::pair<std::string, double>>> hastened(double /*part*/) const {
-    return std::nullopt;
-  }
 };
 
 }  // namespace ropewalk

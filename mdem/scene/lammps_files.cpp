@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* start_format = "ropewalk-lammps-2";
+constexpr const char *start_format = "ropewalk-lammps-2", *sums_key = "sums";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
@@ -42,6 +42,7 @@ void visit_start(S&& s, const Visit& v) {
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
+  v({sums_key, "", "hashes of `in.rope`, `tubes.csv` and `rope.state`, to which `import` holds them"}, s.sums);
 }
 
 // Takes the next number off `text`, and what separates it from the next.
@@ -126,6 +127,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
+      if (key.name == std::string(sums_key) && !json.contains(sums_key)) return;  // of version 0.3.0
       const Json& found = json.at(key.name);
       if (std::is_integral_v<std::decay_t<decltype(value)>> && !found.is_number_integer())
         throw InputError({path, 0, key.name}, "is no whole number", export_again);

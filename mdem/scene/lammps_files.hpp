@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct LammpsStart {
   double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   std::vector<std::string> parameters;              // files, of each tube type
+  std::map<std::string, std::string> sums;          // of the files that LAMMPS reads, by name; empty: an older export
 };
 
 struct LammpsDirectory {

@@ -87,7 +87,7 @@ void begin_with(const StateMemory& memory, const Topology& topology, Interaction
   if (!memory.broken.empty()) {
     if (count_in(in, broken_tubes) == 0) add_term(broken_tubes_term(topology), in);
     all.push_back({broken_tubes, {}});
-    for (const int e : memory.broken) all.back().records.push_back({e, {0, 0, 0, 0}});
+    for (const int e : memory.broken) all.back().records.push_back({e, {}});
   }
   std::map<std::string, long> seen;
   for (auto& term : in.terms) {

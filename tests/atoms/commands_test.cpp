@@ -14,7 +14,8 @@ namespace ropewalk::test {
 namespace {
 namespace UNIT {
 
-TEST(OutputsPageOfAtoms, HasTheTableOfSections) {
+TEST(OutputsPageOfAtoms, HasTheTablesOfCoarsen) {
+  EXPECT_EQ(outputs_table("`found-tubes.csv`"), columns_markdown(found_tube_columns()));
   EXPECT_EQ(outputs_table("`sections.csv`"), columns_markdown(section_columns()));
 }
 
@@ -93,6 +94,7 @@ TEST_F(Bridge, FramesOfAtomsBecomeARun) {
   ASSERT_EQ(coarse.code, 0) << coarse.err;
   EXPECT_NE(coarse.out.find("4 frames"), std::string::npos);
   EXPECT_NE(slurp(dir / "coarse/sections.csv").find("ovality_nm"), std::string::npos);
+  EXPECT_NE(slurp(dir / "coarse/found-tubes.csv").find("\n6,5,5,"), std::string::npos);
   for (const char* verb : {"observe coarse", "report coarse", "view coarse --force", "compare coarse made --force",
                            "convert coarse x.lammpstrj", "atoms coarse -o again.data"}) {
     const Outcome done = run(verb);
@@ -128,10 +130,65 @@ TEST_F(Bridge, PartsOfARunAreWrittenAlone) {
   EXPECT_EQ(table.substr(0, table.find('\n')), "tube,element,first_atom,last_atom");
 }
 
+// Frames are 1 ps apart, and the limit is passed between two of them.
+TEST_F(Bridge, ARunIsSteppedAgainToItsLimit) {
+  spit(dir / "rope.toml", std::string(twisted_rope) + "[limits]\nwall_twist = 0.007\n");
+  ASSERT_EQ(run("run rope.toml --out made --threads 1 --quiet").code, 0);
+  const auto passed = [&](const char* run) {
+    const nlohmann::json all = nlohmann::json::parse(slurp(dir / run / "limits.json"));
+    for (const auto& limit : all["limits"])
+      if (limit["key"] == "wall_twist") return limit;
+    return nlohmann::json();
+  };
+  const nlohmann::json limit = passed("made");
+  ASSERT_TRUE(limit["passed"].get<bool>());
+  const Outcome there = run("atoms made --at wall_twist --length 4 -o there.xyz");
+  ASSERT_EQ(there.code, 0) << there.err;
+  EXPECT_NE(there.err.find("stepped again"), std::string::npos) << there.err;
+  // The same as of a run that ends there.
+  const std::string steps = std::to_string(limit["passed_at_step"].get<int>());
+  ASSERT_EQ(run("run rope.toml --out short --threads 1 --quiet --steps " + steps).code, 0);
+  ASSERT_EQ(run("atoms short/final.csv --parameters cnt-5-5-tersoff -o short.xyz").code, 0);
+  const auto atoms = [&](const char* name) {
+    AtomFiles files({(dir / name).string()}, 1);
+    AtomFrame frame;
+    files.next(frame);
+    return frame;
+  };
+  const AtomFrame place = atoms("there.xyz"), whole = atoms("short.xyz");
+  EXPECT_NEAR(place.time, limit["passed_at_ps"].get<double>(), 1e-6);
+  ASSERT_LT(place.positions.size(), whole.positions.size());
+  for (std::size_t i = 0; i < place.positions.size(); i += 97) {
+    double nearest = 1e9;
+    for (const Vector3& x : whole.positions) nearest = std::min(nearest, (x - place.positions[i]).norm());
+    EXPECT_LT(nearest, 1e-5);
+  }
+  // A run that this program does not make again: the message says by how much the frame misses.
+  spit(dir / "made/scene.toml", slurp(dir / "made/scene.toml") + "[damping]\nbond_damping_per_ps = 9\n");
+  const Outcome other = run("atoms made --at wall_twist --length 4 -o other.xyz");
+  ASSERT_EQ(other.code, 0) << other.err;
+  EXPECT_NE(other.err.find("ps before that. It was not stepped again: this program"), std::string::npos) << other.err;
+}
+
 TEST_F(Bridge, BadInputIsOneLine) {
   make_run();
   spit(dir / "water.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n");
+  spit(dir / "overlap.xyz", "3\nno bond\nC 0 0 0\nC 0 0 0.4\nC 0 0 1.8\n");
+  spit(dir / "narrow.xyz", "1\nLattice=\"3 0 0 0 9 0 0 0 9\"\nC 0 0 0\n");
+  spit(dir / "cut.xyz", "3\ncut off\nC 0 0 0\nC 0 0 1.4\n");
+  const std::string dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+                           "ITEM: ATOMS id type x y z\n1 1 0 0 0\n";
+  spit(dir / "species.lammpstrj", dump + "2 2 0 0 3\n");
+  spit(dir / "cut.lammpstrj", dump);
   const std::pair<const char*, const char*> cases[] = {
+      {"coarsen overlap.xyz -o w", "overlap.xyz: atoms 1 and 2 of the file overlap"},
+      {"coarsen narrow.xyz -o w", "narrow.xyz: its periodic box is 0.3 nm wide, less than two bonds"},
+      {"coarsen cut.xyz -o w", "cut.xyz: ends within its first frame"},
+      {"coarsen species.lammpstrj -o w", "species.lammpstrj:11: type: 2 is of no known species"},
+      {"coarsen cut.lammpstrj -o w", "cut.lammpstrj: ends within its first frame"},
+      {"coarsen water.xyz cut.xyz -o w", "water.xyz: has no carbon nanotube"},
+      {"coarsen missing.xyz -o w", "File does not exist: missing.xyz"},
+      {"atoms made -o a.data --at wall_twist --step-again", "was not passed"},
       {"atoms made -o a.pdb", "a.pdb: -o: ends in none of"},
       {"atoms made -o a.data --tubes 9", "there is no tube 9"},
       {"atoms made -o a.data --tubes 1-", "names no tubes"},

@@ -338,6 +338,26 @@ TEST_F(Faults, OtherVerbsKilledOrOutOfDisk) {
   }
 }
 
+// Files that belong together are all there, or none is.
+TEST_F(Faults, AtomsWithoutRoomLeaveNoneOfTheirFiles) {
+  spit(dir / "s.toml", calm);
+  ASSERT_EQ(run("run s.toml --out ready --quiet").code, 0) << slurp(dir / "stderr.txt");
+  setenv("ROPEWALK_FAULTS_CALL", "write", 1);
+  for (long n = 1;; ++n) {
+    fs::remove_all(dir / "d");
+    fs::create_directories(dir / "d");
+    const Outcome o = with(fmt::format("ENOSPC:{}:on", n), "atoms ready -o d/a.data");
+    if (o.code == 0) {
+      EXPECT_GT(n, 2);
+      EXPECT_TRUE(fs::exists(dir / "d/a.data") && fs::exists(dir / "d/a-elements.csv"));
+      break;
+    }
+    EXPECT_EQ(o.code, 2) << o.err;
+    EXPECT_TRUE(fs::is_empty(dir / "d")) << n;
+  }
+  unsetenv("ROPEWALK_FAULTS_CALL");
+}
+
 // A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its
 // files are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary
 // folder.
@@ -457,43 +477,6 @@ class FaultsOfProcesses : public Faults {
            name.find("report.html") != std::string::npos || name.find("tubes.csv") != std::string::npos;
   }
 };
-
-TEST_F(FaultsOfProcesses, PlanBrokenOff) {
-  spit(dir / "s.toml", calm);
-  // The times are new each time.
-  const auto without_times = [](const std::string& text) {
-    return std::regex_replace(text, std::regex("# plan: seconds [^\n]*"), "");
-  };
-  break_off_everywhere({"plan s.toml -o d/planned.toml -j 1 --pilot-seconds 120",
-                        {"planned.toml"},
-                        [&] { begin(""); },
-                        23,
-                        without_times,
-                        0,
-                        true});
-}
-
-// The disk of TMPDIR is full where a pilot's directory is to be made: no model is refused by that.
-TEST_F(FaultsOfProcesses, PlanWithoutRoomForAPilot) {
-  spit(dir / "s.toml", calm);
-  setenv("ROPEWALK_FAULTS_CALL", "mkdir", 1);
-  setenv("ROPEWALK_FAULTS_TOGETHER", (dir / "together").c_str(), 1);
-  int pilots = 0;
-  for (int n = 1;; ++n) {
-    begin("");
-    fs::create_directories(dir / "d/t");
-    for (const char* name : {"made", "together", "planned.toml"}) fs::remove(dir / name);
-    const Outcome o = with(fmt::format("ENOSPC:{}", n), "plan s.toml -o planned.toml -j 1 --pilot-seconds 120");
-    if (!fs::exists(dir / "made")) break;
-    EXPECT_EQ(o.code, 3) << n << o.err;
-    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << n << o.err;
-    EXPECT_FALSE(fs::exists(dir / "planned.toml")) << n;
-    EXPECT_THAT(temporary_folders(), ::testing::IsEmpty()) << n;
-    pilots +=
-        o.err.find("was broken off: ") != std::string::npos && o.err.find("No space left") != std::string::npos;
-  }
-  EXPECT_GT(pilots, 0);
-}
 
 TEST_F(FaultsOfProcesses, ThresholdBrokenOff) {
   spit(dir / "tube.toml",

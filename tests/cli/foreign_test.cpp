@@ -142,7 +142,9 @@ TEST_F(Foreign, APipeIsNoFile) {
         "threshold pipe --out t", "sweep of-pipe.toml --dry-run", "check state.toml", "check set.toml",
         "check friction.toml", "energy pipe --parameters cnt-10-10-tersoff",
         "energy pipe.csv --parameters pipe.toml", "export pipe --lammps e", "calibrate show pipe.toml",
-        "compare pipe.toml cnt-10-10-tersoff", "rest pipe", "modes pipe"}) {
+        "compare pipe.toml cnt-10-10-tersoff", "rest pipe", "modes pipe", "coarsen pipe -o c",
+        "coarsen pipe.csv --state c.csv", "atoms pipe.csv -o a.xyz --parameters cnt-10-10-tersoff",
+        "calibrate fluctuations pipe"}) {
     const Outcome o = run(arguments, "timeout 60");
     EXPECT_EQ(o.code, 2) << arguments << ": " << o.err;
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;

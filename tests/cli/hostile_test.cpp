@@ -127,7 +127,7 @@ const std::vector<Hostile> scenes = {
      2, "load.rate_deg_per_ps"},
     {"ElementsTiny", "element_length_nm = 0.001\n" + std::string(chain) + brief, 2, "element_length_nm"},
     {"ElementsHuge", "element_length_nm = 1e6\n" + std::string(chain) + brief, 2, "element_length_nm"},
-    {"ElementsLong", "element_length_nm = 10\n" + std::string(chain) + brief, 0, "% off there: take shorter ones"},
+    {"ElementsLong", "element_length_nm = 10\n" + std::string(chain) + brief, 0, "% off there. Take shorter elements"},
     {"OneElement", "[chain]\nelements = 1\n" + std::string(brief), 2, "chain.elements"},
     {"TooManyElements", "[chain]\nelements = 2000000000\n" + std::string(brief), 2, "chain.elements"},
     {"EightTubes", "[rope]\ntubes = 8\nlength_nm = 13.6\n" + std::string(brief), 2, "the nearest are 7 and 19"},

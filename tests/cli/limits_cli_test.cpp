@@ -353,7 +353,7 @@ TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
   hot("long.toml", "32", "[limits]\nenergy_drift = 0.01\n");
   const Outcome o = run("run long.toml --out d --quiet");
   EXPECT_EQ(o.code, 0) << o.err;
-  EXPECT_THAT(o.err, HasSubstr("the energy balance is off, over the energy that has moved, by"));
+  EXPECT_THAT(o.err, HasSubstr("the error of the energy balance, over the energy that was converted, is"));
   EXPECT_THAT(o.err, HasSubstr("beyond limits.energy_drift = 0.01"));
   EXPECT_THAT(o.out, HasSubstr("Limits passed: energy_drift up to 0.0"));
   const auto drift_of = [&](const char* folder) {
@@ -364,7 +364,7 @@ TEST_F(Limits, EnergyDriftIsALimitOfTheWholeRun) {
   EXPECT_EQ(limit.at("key"), "energy_drift");
   EXPECT_EQ(limit.at("tube"), -1);
   EXPECT_TRUE(limit.at("passed").get<bool>());
-  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("of the energy that had moved; the limit is 1 %"));
+  EXPECT_THAT(slurp(dir / "d/report.html"), HasSubstr("of the energy that was converted; the limit is 1 %"));
   EXPECT_EQ(run("run long.toml --out e --quiet --on-limit stop").code, 5);
   // It is judged alike after a resume.
   EXPECT_EQ(run("run long.toml --out f --quiet --until 7").code, 0);

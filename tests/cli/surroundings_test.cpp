@@ -154,11 +154,10 @@ TEST_F(Surroundings, TemporaryPlacesOfOthersAreNeitherTakenNorHarmed) {
         rows.insert(std::regex_replace(line, std::regex("[0-9]+\\.[0-9]+(?![0-9]| %)"), "T"));
     return rows;
   };
-  for (const char* verb : {"plan s.toml -o planned.toml -j 1", "sweep w.toml --dry-run", "convert d c.lammpstrj",
-                           "view d -o v.html"}) {
+  for (const char* verb : {"sweep w.toml --dry-run", "convert d c.lammpstrj", "view d -o v.html"}) {
     // The number of the process is known before the program begins.
     const auto in_a_place = [&](const std::string& prepare) {
-      for (const char* made : {"t", "planned.toml", "c.lammpstrj", "v.html"}) fs::remove_all(dir / made);
+      for (const char* made : {"t", "c.lammpstrj", "v.html"}) fs::remove_all(dir / made);
       fs::create_directories(dir / "t");
       return script(fmt::format(
           "export TMPDIR=$PWD/t\n{}\nfind t -ls > before.txt\n"
@@ -174,10 +173,10 @@ TEST_F(Surroundings, TemporaryPlacesOfOthersAreNeitherTakenNorHarmed) {
     const Outcome clean = in_a_place("PREPARE=:");
     ASSERT_EQ(clean.code, 0) << verb << clean.err;
     const Outcome beside = in_a_place(
-        "PREPARE='for n in plan timing; do mkdir -p t/ropewalk-$n-$id; cp -r d t/ropewalk-$n-$id/0; "
+        "PREPARE='for n in timing; do mkdir -p t/ropewalk-$n-$id; cp -r d t/ropewalk-$n-$id/0; "
         "ln -s ../../outside/file t/ropewalk-$n-$id/seconds; ln -s ../../outside/file t/ropewalk-$n-$id/0.txt; "
         "done; "
-        "for n in c.lammpstrj v.html planned.toml; do ln -s outside/file $n.part-$id; "
+        "for n in c.lammpstrj v.html; do ln -s outside/file $n.part-$id; "
         "ln -s outside/file $n.part-$id-0; done'");
     EXPECT_EQ(beside.code, 0) << verb << beside.err;
     EXPECT_EQ(errors_of(beside.out), errors_of(clean.out)) << verb;

@@ -44,7 +44,7 @@ columns = {"stretch (eV)": "stretch_eV", "bend (eV)": "bend_eV", "twist (eV)": "
 
 
 def number(text):
-    return float(text.replace("−", "-").replace("\u2009", ""))
+    return float(text.replace("−", "-").replace("\u202f", ""))
 
 
 def report_of_a_run(browser, program, folder):

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # The Debian packages on a bare Debian 12: installed, a rope twisted by an ordinary user, moved and read-only, a program built
 # against the libraries and run elsewhere, removed without a trace. As root, with debootstrap and a network; not a part of ctest. Arguments: a folder with the packages (`cd
-# build/release && cpack`), and a bare Debian 12, which is not changed (default: one is made by debootstrap).
+# build/release && cpack`), a bare Debian 12, which is not changed (default, or "": one is made by debootstrap), and a folder with the package of an
+# earlier version, from which the simulator is then upgraded.
 set -euo pipefail
-packages=$(realpath "$1") bare=${2:+$(realpath "$2")}
+packages=$(realpath "$1") bare=${2:+$(realpath "$2")} earlier=${3:+$(realpath "$3")}
 work=$(mktemp -d) root=
 cleanup() {
   [ -z "$root" ] || ! mountpoint -q "$root/proc" || umount "$root/proc"
@@ -33,12 +34,6 @@ inside useradd --create-home somebody
 files > "$work/before"
 inside dpkg-query -W > "$work/packages-before"
 
-mkdir "$root/root/packages"
-cp "$packages"/*.deb "$root/root/packages/"
-inside bash -c 'apt-get install -y -qq --no-install-recommends /root/packages/ropewalk_*.deb' >/dev/null
-[ -z "$(find "$root/usr/lib" -name 'liblammps*')" ] || fail "the simulator alone has brought LAMMPS"
-echo "installed: $(($(inside dpkg-query -W | wc -l) - $(wc -l < "$work/packages-before"))) packages for the simulator"
-
 cat > "$root/home/somebody/seven.toml" <<'SCENE'
 format = "ropewalk-scene-1"
 parameters = "cnt-10-10-tersoff"
@@ -49,9 +44,37 @@ length_nm = 14
 moment_nN_nm = 5
 rate_nN_nm_per_ps = 5
 SCENE
+
+# With an earlier version: a run that is done, and one that is half done.
+if [ -n "$earlier" ]; then
+  mkdir "$root/root/earlier"
+  cp "$earlier"/ropewalk_*.deb "$root/root/earlier/"
+  inside bash -c 'apt-get install -y -qq --no-install-recommends /root/earlier/ropewalk_*.deb' >/dev/null
+  as_user 'ropewalk --version && ropewalk run seven.toml --out done --quiet && ropewalk run seven.toml --out half --until 1 --quiet' > "$work/said" 2>&1 ||
+    fail "the earlier version: $(tail -3 "$work/said")"
+  version=$(head -n 1 "$work/said" | grep -oE '[0-9]+\.[0-9]+\.[0-9]+')
+fi
+
+mkdir "$root/root/packages"
+cp "$packages"/*.deb "$root/root/packages/"
+inside bash -c 'apt-get install -y -qq --no-install-recommends /root/packages/ropewalk_*.deb' >/dev/null
+[ -z "$(find "$root/usr/lib" -name 'liblammps*')" ] || fail "the simulator alone has brought LAMMPS"
+echo "installed: $(($(inside dpkg-query -W | wc -l) - $(wc -l < "$work/packages-before"))) packages for the simulator"
+
 as_user 'ropewalk check seven.toml && ropewalk run seven.toml --out seven --quiet && ropewalk observe seven' > "$work/said" 2>&1 ||
   fail "an ordinary user's rope: $(tail -3 "$work/said")"
 [ -s "$root/home/somebody/seven/report.html" ] || fail "the run left no report"
+
+# Upgraded: runs of the earlier version are read, and go on, or are refused by the name of that version.
+if [ -n "$earlier" ]; then
+  printf 'format = "ropewalk-scene-1"\nparameters = "done/parameters.toml"\n[state]\nfile = "done/final.csv"\n[run]\nduration_ps = 1\n' > "$root/home/somebody/again.toml"
+  as_user 'ropewalk observe done && ropewalk report done && ropewalk compare done seven && ropewalk picture done -o p.svg && ropewalk run again.toml --out again --quiet' > "$work/said" 2>&1 ||
+    fail "runs of ropewalk $version: $(tail -3 "$work/said")"
+  as_user 'ropewalk resume half --quiet' > "$work/said" 2>&1 || grep -q "was written by ropewalk $version" "$work/said" ||
+    fail "going on with a run of ropewalk $version: $(tail -3 "$work/said")"
+  echo "upgraded from $version; a run of it goes on: $(tail -n 1 "$work/said")"
+  rm -rf "$root"/home/somebody/{done,half,again,again.toml,p.svg,compare.html} "$root/root/earlier"
+fi
 
 # Moved, and where nothing may be written.
 mkdir -p "$root/opt/moved/bin" "$root/opt/moved/share"

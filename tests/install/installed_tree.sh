@@ -77,9 +77,9 @@ consumer/twist only-here > said || fail "the consumer does not find the data of 
 grep -q "70 elements" said || fail "the consumer's rope is wrong"
 grep -q "s of processor time" said || fail "the consumer cannot time a run"
 [ ! -e from-memory.toml ] || fail "the consumer left a file"
-# A load and a scene kind of one's own, registered by programs outside of this tree, in scenes that name them.
-cmake -S "$here/own_load" -B own_load -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
-cmake --build own_load >/dev/null
+# A load, a scene kind, a contact law and a force term of one's own, registered by programs outside of this tree, in scenes that name them.
+cmake -S "$here/own_parts" -B own_parts -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build own_parts --parallel 2 >/dev/null
 cat > pair.toml <<'SCENE'
 format = "ropewalk-scene-1"
 parameters = "cnt-10-10-tersoff"
@@ -93,14 +93,53 @@ growth_nN_per_nm = 1e-3
 [run]
 duration_ps = 1
 SCENE
-own_load/my-ropewalk run pair.toml --out pair --quiet > said || fail "ropewalk with a kind and a load of one's own: $(cat said)"
-[ -s pair/report.html ] && own_load/my-ropewalk help pair | grep -q 'apart_nm' || fail "the kind of one's own has no help"
-own_load/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/dev/null
-grep -q "$PWD/own_load/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
+own_parts/my-ropewalk run pair.toml --out pair --quiet > said || fail "ropewalk with a kind and a load of one's own: $(cat said)"
+[ -s pair/report.html ] && own_parts/my-ropewalk help pair | grep -q 'apart_nm' || fail "the kind of one's own has no help"
+# With all four: two rows of beads rest apart a bit nearer than two beads do, and the trap is in log, balance and help.
+cat > four.toml <<'SCENE'
+format = "ropewalk-scene-1"
+parameters = "cnt-10-10-tersoff"
+[pair]
+length_nm = 14
+apart_nm = 1.8
+[contact]
+law = "beads"
+[damping]
+contact_viscosity_eV_ps_per_nm3 = 0
+[trap]
+stiffness_nN_per_nm = 0.01
+[[load]]
+kind = "wind"
+elements = "all"
+growth_nN_per_nm = 1e-3
+[run]
+duration_ps = 2
+SCENE
+own_parts/my-ropewalk run four.toml --out four --quiet > said || fail "ropewalk with four parts of one's own: $(cat said)"
+own_parts/my-ropewalk help trap | grep -q 'stiffness_nN_per_nm' || fail "the force term of one's own has no help"
+python3 - <<'SCRIPT' || fail "the trap, or the law of beads, is not that of its formula"
+import csv, math
+log, last = list(csv.DictReader(open("four/log.csv"))), list(csv.DictReader(l for l in open("four/final.csv") if l[0] != "#"))
+stiffness, radius = 0.01 / 0.1602176634, 0.688794  # eV/nm^2, nm
+trapped = sum(0.5 * stiffness * (float(r["x_nm"])**2 + float(r["y_nm"])**2) for r in last)
+places = [[(float(r["x_nm"]), float(r["y_nm"]), float(r["z_nm"])) for r in last if r["tube"] == t] for t in "01"]
+def bead(r, rest=2 * radius + 0.335, depth=0.5, cutoff=4.5):
+    def well(r):
+        p = 0.5 * (rest / r)**6
+        return 4 * depth * (p * p - p), 4 * depth * (6 * p - 12 * p * p) / r
+    return well(r)[0] - well(cutoff)[0] - (r - cutoff) * well(cutoff)[1] if r < cutoff else 0
+bound = sum(bead(math.dist(a, b)) for a in places[0] for b in places[1])
+end = log[-1]
+for name, found, wanted in (("trap", float(end["trap_eV"]), trapped), ("vdw", float(end["vdw_eV"]), bound)):
+    assert wanted != 0 and abs(found / wanted - 1) < 1e-4, (name, found, wanted)
+assert abs(float(end["balance_eV"])) < 1e-3 * abs(float(end["work_eV"])), end["balance_eV"]
+SCRIPT
+own_parts/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/dev/null
+grep -q "$PWD/own_parts/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
 sed 's/^apart_nm.*/apart = 1.8/' pair.toml > bad.toml
-own_load/my-ropewalk check bad.toml 2> said && fail "an unknown key of the kind is taken"
+own_parts/my-ropewalk check bad.toml 2> said && fail "an unknown key of the kind is taken"
 grep -q 'pair.apart_nm: is missing; did you mean it by "apart"' said || fail "the kind's own key is not named: $(cat said)"
-own_load/own_load "$here/own_load/wind.toml" || fail "the tube in the wind does not bend as a beam does"
-sed '/^growth/d' "$here/own_load/wind.toml" > calm.toml
-own_load/own_load calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"
+own_parts/own_parts "$here/own_parts/wind.toml" || fail "the tube in the wind does not bend as a beam does"
+sed '/^growth/d' "$here/own_parts/wind.toml" > calm.toml
+own_parts/own_parts calm.toml 2> said && fail "a scene without growth_nN_per_nm runs"
 grep -q "load.growth_nN_per_nm: is missing" said || fail "the load's own key is not named: $(cat said)"

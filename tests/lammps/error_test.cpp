@@ -175,6 +175,48 @@ TEST_F(LammpsErrors, ANameIsNoCommand) {
   EXPECT_EQ(run("import out").code, 0) << slurp(dir / "stderr.txt");
 }
 
+// A script, a row and a set of states that are not those of the export.
+TEST_F(LammpsErrors, ImportHoldsWhatItReadsToTheExport) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = "
+      "6.78\n[run]\nduration_ps = 0.3\n",
+      "out");
+  ASSERT_EQ(lmp(1, "out", "-in in.rope -var every 5").code, 0);
+  const std::string script = slurp(dir / "out/in.rope"), rows = slurp(dir / "out/lammps-rows.csv");
+  const auto expect = [&](const std::string& message) {
+    const Outcome o = run("import out");
+    EXPECT_EQ(o.code, 2) << message;
+    EXPECT_NE(o.err.find(message), std::string::npos) << o.err;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  };
+  edit("out", "thermo ${every}", "thermo 1");
+  expect("in.rope: is not as it was exported");
+  spit(dir / "out/in.rope", script);
+  // The last row: step, time, four energies of bonds, vdw, kinetic.
+  const std::size_t last = rows.rfind('\n', rows.size() - 2) + 1;
+  const auto with = [&](int column, double by) {
+    std::size_t at = last;
+    for (int k = 0; k < column; ++k) at = rows.find(',', at) + 1;
+    std::string changed = rows;
+    const std::size_t length = rows.find(',', at) - at;
+    spit(dir / "out/lammps-rows.csv",
+         changed.replace(at, length, std::to_string(std::stod(rows.substr(at, length)) + by)));
+  };
+  with(1, 0.01);
+  expect("by the export");
+  with(3, 0.1);
+  expect("eV in bonds at step");
+  with(6, 0.1);
+  expect("eV in contacts at step");
+  with(7, 0.1);
+  expect("eV in motion at step");
+  spit(dir / "out/lammps-rows.csv", rows);
+  edit("out", "thermo ${every}", "thermo 1");
+  const Outcome o = run("import out --accept-changes");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.err.find("note: out/in.rope is not as it was exported"), std::string::npos) << o.err;
+}
+
 // Nothing is written before all of it is read.
 TEST_F(LammpsErrors, AnImportThatFailsLeavesTheRunAsItWas) {
   exported(

@@ -62,6 +62,41 @@ void shake(const Slice& slice, State& s, double by, double speed) {
   slice.load->place(slice.p.topology, s);
 }
 
+// 2000 turns per metre lay the surface of a yarn of 20 um at atan(0.04 pi) to its axis, and so the outermost of 19
+// tubes, whose axes stand two distances from the middle.
+TEST(PeriodicSlice, TurnsPerMetreGiveTheAngleOfAYarn) {
+  const std::string turns = "[periodic]\nturns_per_m = [[0, 2000], [50, 1000]]\nyarn_diameter_um = 20\n";
+  const Slice slice(slice_text(19, 16, turns));
+  const double tangent = 0.04 * units::pi;
+  EXPECT_NEAR(slice.load->schedule().value(0), tangent / (2 * slice.p.spacing), 1e-12);
+  EXPECT_NEAR(slice.load->schedule().last(), 0.5 * tangent / (2 * slice.p.spacing), 1e-12);
+  EXPECT_EQ(slice.p.duration, 50);
+  // Wound by as much at the start: elements of a corner lean by that angle.
+  double most = 0;
+  for (std::size_t i = 0; i < slice.p.state.size(); ++i)
+    most = std::max(most, std::acos(axis_of(slice.p.state.orientation[i]).z()));
+  EXPECT_NEAR(std::tan(most), tangent, 1e-9);
+  EXPECT_THAT(
+      slice.scene.drives.front()->words(),
+      HasSubstr("twisted to 3.595 degrees at its surface in 50 ps, as a yarn of 20 um is by 1000 turns per metre"));
+  const auto message = [](int tubes, const std::string& keys) -> std::string {
+    try {
+      Slice(slice_text(tubes, 16, "[periodic]\n" + keys));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string yarn = "yarn_diameter_um = 20\n", some = "turns_per_m = [[0, 0], [9, 2000]]\n";
+  EXPECT_THAT(message(7, ""),
+              HasSubstr("periodic.twist_deg_per_nm: is missing; give twist_deg_per_nm, or turns_per_m"));
+  EXPECT_THAT(message(7, some + yarn + "twist_deg_per_nm = [[0, 1]]\n"), HasSubstr("stands beside turns_per_m"));
+  EXPECT_THAT(message(7, some), HasSubstr("periodic.yarn_diameter_um: is missing"));
+  EXPECT_THAT(message(7, yarn + "turns_per_m = [[0, 20000]]\n"),
+              HasSubstr("lays the surface of the yarn at 51.5 degrees"));
+  EXPECT_THAT(message(1, some + yarn), HasSubstr("a single tube has no angle at its surface"));
+}
+
 // A yarn: tubes of two kinds and several lengths that end inside of the slice, and links.
 std::string yarn_text(const std::string& more, const std::string& of_slice = "") {
   return "format = \"ropewalk-scene-1\"\nparameters = [\"cnt-10-10-tersoff\", \"cnt-5-5-tersoff\"]\n"

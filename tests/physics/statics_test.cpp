@@ -1,17 +1,25 @@
 // States of rest by Newton's method against closed forms and against FIRE.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "model/error.hpp"
+#include "observe/loading.hpp"
 #include "scene/ends/grip.hpp"
+#include "scene/ends/periodic.hpp"
 #include "scene/ends/twist.hpp"
 #include "scene/loads/fix.hpp"
 #include "scene/loads/force.hpp"
 #include "scene/loads/torque.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/statics/end_words.hpp"
 #include "sim/statics/newton.hpp"
+#include "sim/statics/reduction.hpp"
+#include "sim/statics/stiffness.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -124,6 +132,13 @@ TEST(Statics, TubeBetweenCouplesTwistsAsItsBonds) {
   for (int e = 0; e < b.last; ++e)
     EXPECT_NEAR(bond_twist_angle(frame_of(s.state().orientation[e]), frame_of(s.state().orientation[e + 1])), each,
                 1e-7);
+}
+
+TEST(Statics, AFreeTubeWithoutForcesIsAtRest) {
+  Simulation s = Beam(10).make();
+  const Statics end = rest(s, {});
+  EXPECT_TRUE(end.relaxed.at_rest);
+  EXPECT_LT(end.newton_steps, 30);
 }
 
 // Straight to the last bit: no force acts sideways.
@@ -312,6 +327,111 @@ TEST(Statics, RopeFollowsAClampThereAndBack) {
   EXPECT_NEAR(many[5], few[0], 1e-5);
 }
 
+// --- slices of an endless rope ---------------------------------------------------------------------------------
+
+std::string slice_text(const std::string& periodic, const std::string& more = "") {
+  return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = "
+         "22.0413\n"
+         "[contact]\nprecision = \"double\"\n[periodic]\n" +
+         periodic + more;
+}
+struct Slice {
+  Scene scene;
+  Prepared p;
+
+  explicit Slice(const std::string& text) : scene(scene_of_text(text, "slice.toml")), p(prepare(scene)) {}
+  Simulation make() const { return start(scene, p); }
+};
+const std::string by_newton = "[run]\nmode = \"relax\"\nsolver = \"newton\"\n";
+
+State shaken(const State& state, double by) {
+  test::Random random(4);
+  State out = state;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out.position.add(i, by * random.direction());
+    out.orientation.set(i, (test::turn(random.direction(), by) * out.orientation[i]).normalized());
+  }
+  return out;
+}
+
+// The tangent of a slice is symmetric, so that it is that of an energy, and the derivative of its forces: on its
+// own elements, and on its period where that is free.
+TEST(Statics, TangentOfASliceIsThatOfAnEnergy) {
+  for (const char* tension : {"", "tension_nN = [[0, 20]]\n"}) {
+    Slice slice(slice_text("twist_deg_per_nm = [[0, 1.5]]\n" + std::string(tension), by_newton));
+    slice.p.state = shaken(slice.p.state, 0.03);
+    slice.p.loads.of<PeriodicLoad>().front()->place(slice.p.topology, slice.p.state);
+    const Simulation s = slice.make();
+    std::string why;
+    const auto of = reduction_of(s, why);
+    ASSERT_TRUE(of) << why;
+    EXPECT_EQ(of->mass.size() % 6, *tension ? 1 : 0);
+    StiffnessMaker maker(s);
+    BlockMatrix blocks = maker.make(s);
+    const Eigen::MatrixXd k = of->forces * blocks.sparse() * of->motions;
+    // The images reach as far as the contact, but for a part of an element at whose distance it is weak.
+    EXPECT_LT((k - k.transpose()).norm(), 1e-5 * k.norm()) << tension;
+    Eigen::VectorXd total(6 * static_cast<Eigen::Index>(s.state().size()));
+    const auto forces = [&](const State& at) {
+      const Forces f = s.forces_at(at, Interaction::Precision::full);
+      for (std::size_t i = 0; i < at.size(); ++i)
+        total.segment<6>(6 * static_cast<Eigen::Index>(i)) << f.force[i], f.torque[i];
+      return Eigen::VectorXd(of->forces * (total + load_forces(s.loads(), at)));
+    };
+    forces(s.state());
+    add_left_torque(total, blocks);
+    Eigen::VectorXd q(of->mass.size()), resistance;
+    test::Random random(2);
+    for (Eigen::Index n = 0; n < q.size(); ++n) q[n] = random.uniform(-1, 1);
+    const Eigen::VectorXd u = of->motions * q;
+    blocks.multiply(u, resistance);
+    constexpr double h = 1e-5;
+    const auto at = [&](double by) { return forces(moved(s.state(), by * u)); };
+    const Eigen::VectorXd change = -(8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+    EXPECT_LT((of->forces * resistance - change).norm(), 1e-8 * change.norm()) << tension;
+  }
+}
+
+// By Newton's method at once, along a schedule, and by damped dynamics.
+TEST(Statics, SliceRestsWhereItsDynamicsEnds) {
+  const RelaxGoal goal{1e-6, 1e-5};
+  const auto twist = [](double last) {
+    return fmt::format("twist_deg_per_nm = [[0, {}], [10, 1.5]]\ntension_nN = [[0, 10]]\n", last);
+  };
+  const auto ends = [](Simulation& s) { return s.read_gauges()[upper_end]; };
+  Slice constant(slice_text("twist_deg_per_nm = [[0, 1.5]]\ntension_nN = [[0, 10]]\n", by_newton));
+  constant.p.state = shaken(constant.p.state, 0.01);
+  constant.p.loads.of<PeriodicLoad>().front()->place(constant.p.topology, constant.p.state);
+  Simulation s = constant.make();
+  const Statics end = NewtonStatics(s).relax(goal, 300, go_on);
+  ASSERT_TRUE(end.relaxed.at_rest) << end.largest_force << " " << end.largest_torque;
+  EXPECT_LT(end.newton_steps, 60);
+  EXPECT_GT(std::fabs(ends(s).torque.z()), 1);
+
+  Slice led(slice_text(twist(1.3), "[statics]\nsteps = 2\n" + by_newton));
+  Simulation by_steps = led.make();
+  NewtonStatics newton(by_steps);
+  ASSERT_EQ(newton.follow(10, goal, go_on).end, Statics::End::at_rest);
+  ASSERT_TRUE(newton.relax(goal, 300, go_on).relaxed.at_rest);
+
+  Slice damped(slice_text(
+      "twist_deg_per_nm = [[0, 1.5]]\ntension_nN = [[0, 10]]\n",
+      "[damping]\ncontact_viscosity_eV_ps_per_nm2 = 20\nbond_damping_per_ps = 2\n[run]\nduration_ps = 1\n"));
+  damped.p.state = constant.p.state;
+  Simulation dynamics = damped.make();
+  dynamics.steps(static_cast<long>(60 / damped.p.time_step));
+
+  const double period = slice_length(s.topology(), s.state());
+  for (Simulation* other : {&by_steps, &dynamics}) {
+    const double tolerance = other == &by_steps ? 1e-5 : 2e-3;
+    EXPECT_NEAR(other->forces().energy.bonds(), s.forces().energy.bonds(), tolerance * s.forces().energy.bonds());
+    EXPECT_NEAR(slice_length(s.topology(), other->state()), period, 1e-2 * tolerance * period);
+    EXPECT_NEAR(ends(*other).torque.z(), ends(s).torque.z(), tolerance * std::fabs(ends(s).torque.z()));
+  }
+}
+
+// --- ends without a state of rest ------------------------------------------------------------------------------
+
 TEST(Statics, MotionsThatNothingHoldsAreNamed) {
   using ::testing::HasSubstr;
   const auto why = [](const Simulation& s) { return NewtonStatics::refusal(s).why; };
@@ -339,6 +459,30 @@ TEST(Statics, ALoadThatATubeDoesNotBearIsNamed) {
   const Statics end = NewtonStatics(s).relax({}, 300, go_on);
   EXPECT_FALSE(end.relaxed.at_rest);
   EXPECT_NE(overloaded_bond(s).find("slips at a twist of 90 degrees"), std::string::npos) << overloaded_bond(s);
+}
+
+// A couple below and above that of the edge of the window, where the torque of a tube ends to rise.
+TEST(Statics, ATubeRestsBelowThePlateauOfItsCollapseAlone) {
+  Beam b(15);
+  b.topology.types[0].bond = test::anharmonic_bond();
+  Anharmonic& h = b.topology.types[0].bond.anharmonic;
+  h.coupling = h.e3 = h.e2s = h.es2 = h.s3 = h.e4 = h.e3s = h.e2s2 = h.es3 = 0;
+  const double edge = twist_energy(h, b.bond().twist, h.max_shear / h.radius).by_twist;
+  for (const double part : {0.99, 1.01}) {
+    LoadsAndConstraints loads;
+    TwistLoad twist;
+    twist.moment = part * edge;
+    add_twist(twist, b.topology, loads);
+    Simulation s(b.topology, {}, loads, b.state, 0.01);
+    NewtonOptions options;
+    options.most_overloaded = 60;
+    const Statics end = NewtonStatics(s, options).relax({}, 1000, go_on);
+    EXPECT_EQ(end.relaxed.at_rest, part < 1);
+    const EndWords words = end_words(s, end, false, false);
+    if (part < 1) continue;
+    EXPECT_THAT(words.why, ::testing::HasSubstr("has collapsed"));
+    EXPECT_THAT(words.remedy, ::testing::HasSubstr("end the load below"));
+  }
 }
 
 }  // namespace UNIT

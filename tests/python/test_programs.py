@@ -85,13 +85,6 @@ class ProgramsTest(FolderTest):
         self.assertIn("<svg", pathlib.Path("both.html").read_text())
         self.assertTrue(any("beta_deg" in name for name in curves), list(curves))
 
-    def test_plan(self):
-        scene = ropewalk.Scene({**ROPE, "run": {"duration_ps": 1}})
-        planned = ropewalk.plan(scene, error=0.05, pilot_seconds=5)
-        self.assertEqual(planned["rope.tubes"], 7)
-        self.assertIn("# Planned for an error of 5 %", planned.text)
-        self.assertEqual(os.listdir("."), [])
-
     def test_pictures_pages_and_formats(self):
         run = ropewalk.run(ROPE, "run")
         self.assertIn("<svg", pathlib.Path(ropewalk.picture(run, "a.svg", at_ps=[0, 1.5], curves=["beta_deg"])).read_text())

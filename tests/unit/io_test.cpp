@@ -667,14 +667,14 @@ TEST(Text, IsEscaped) { EXPECT_EQ(escape_markup("<a href='x'>&\"\x01"), "&lt;a h
 TEST(Text, NumbersAreReadable) {
   EXPECT_EQ(number_text(0), "0");
   EXPECT_EQ(number_text(-1.5), "−1.5");
-  EXPECT_EQ(number_text(123456), "123\u2009456");
+  EXPECT_EQ(number_text(123456), "123\u202f456");
   EXPECT_EQ(number_text(1234.56), "1235");
   EXPECT_EQ(number_text(0.00012345, 3), "0.000123");
   EXPECT_EQ(number_text(-1.5e-7), "−1.5·10⁻⁷");
   EXPECT_EQ(number_text(2e12), "2·10¹²");
   EXPECT_EQ(number_text(nan_value), "–");
   EXPECT_EQ(fixed_text(-0.001, 2), "0.00");
-  EXPECT_EQ(fixed_text(-12345.678, 1), "−12\u2009345.7");
+  EXPECT_EQ(fixed_text(-12345.678, 1), "−12\u202f345.7");
 }
 
 TEST(Viridis, RunsFromVioletToYellow) {
@@ -1045,6 +1045,16 @@ TEST(Report, ValuesThatAreNotNumbers) {
   const std::string html = report_html(in);
   expect_sound_page(html);
   EXPECT_THAT(html, HasSubstr("Not drawn"));
+}
+
+TEST(Report, NamesChartsThatWouldShowZero) {
+  ReportInput in = some_report(40);
+  for (LogRow& r : in.log) r["Q"] = r["Q_delaunay"] = r["windings"] = 0;
+  const std::string html = report_html(in);
+  EXPECT_THAT(html, HasSubstr("Zero at all times: Packing charge, Windings of the centre line."));
+  EXPECT_THAT(html, Not(HasSubstr("Packing charge</h3>")));
+  in.log[20]["Q"] = -1;
+  EXPECT_THAT(report_html(in), HasSubstr("Packing charge</h3>"));
 }
 
 TEST(Report, ASingleTubeHasNoPackingCharge) {

@@ -1,25 +1,17 @@
-// The planner with invented pilots, whose errors can be added up by hand; and the parts of the planner.
+// What is foreseen of a scene, changes of its text, and a run against a finer model.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <functional>
-#include <map>
 
-#include "io/files.hpp"
 #include "model/error.hpp"
 #include "observe/observe.hpp"
-#include "plan/spot_check.hpp"
 #include "plan/features.hpp"
 #include "plan/outcome.hpp"
-#include "plan/planner.hpp"
 #include "plan/scene_edit.hpp"
+#include "plan/spot_check.hpp"
 #include "scene/dissipation.hpp"
-#include "scene/ends/twist.hpp"
-#include "scene/kinds/rope.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/wound.hpp"
 
@@ -27,9 +19,7 @@ namespace ropewalk {
 namespace {
 namespace UNIT {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string head = "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n";
 const std::string bundle = head +
@@ -38,218 +28,6 @@ const std::string bundle = head +
 const std::string lone = head + "[chain]\nelements = 41\n[run]\nduration_ps = 20\n";
 
 Scene scene_from(const std::string& text) { return scene_of_text(text, "scene.toml"); }
-
-// Made-up findings of pilots: the energy is off by a part that each change of the model adds, and beta by another.
-struct MadeUp {
-  double longer = 0.004, fewer_nodes = 0.002, nearer = 0.008, chance = 0;  // relative
-  std::map<std::string, double> seconds = {};  // of models whose name has this in it; 1 for others
-  std::vector<std::string> failing = {};
-  std::vector<PilotTask> seen = {};
-
-  std::vector<PilotEnd> operator()(const std::vector<PilotTask>& tasks) {
-    std::vector<PilotEnd> ends;
-    for (const PilotTask& task : tasks) {
-      seen.push_back(task);
-      const Scene s = scene_from(task.text);
-      const double own = s.parameters().element_length;
-      double off = longer / 3 * (std::pow(s.element_length / own, 2) - 0.25) / 0.75;
-      if (s.contact.nodes > 0) off += fewer_nodes;
-      if (s.contact.cutoff > 0) off += nearer;
-      off += chance * static_cast<double>(s.start.seed % 3);
-      PilotEnd end;
-      for (const double time : {0.0, 80.0, 100.0}) {
-        LogRow row;
-        row["time_ps"] = time;
-        row["twist_eV"] = time * (1 + off);
-        row["beta_deg"] = 0.2 * time;
-        row["vdw_eV"] = -500;
-        end.log.push_back(row);
-      }
-      end.seconds = 1;
-      for (const auto& [name, value] : seconds)
-        if (task.name.find(name) != std::string::npos) end.seconds *= value;
-      for (const std::string& name : failing)
-        if (task.name.find(name) != std::string::npos) end.failure = "a bond slipped";
-      ends.push_back(end);
-    }
-    return ends;
-  }
-};
-
-Plan planned(const std::string& text, double error, MadeUp& pilots, PlanRequest request = {}) {
-  request.error = error;
-  return plan_scene(scene_from(text), request, 1, 60, std::ref(pilots));
-}
-const std::map<std::string, double> usual_seconds = {{"twice", 0.5}, {"nodes", 0.8}, {"cut off", 0.9}, {"half", 6}};
-
-TEST(Plan, TakesTheCheapestThatHoldsTheErrorTogether) {
-  MadeUp pilots;
-  pilots.seconds = usual_seconds;
-  const Plan p = planned(bundle, 0.05, pilots);
-  EXPECT_TRUE(p.pilots.empty()) << p.pilots;
-  EXPECT_THAT(p.chosen.name,
-              AllOf(HasSubstr("elements twice as long"), HasSubstr("nodes for"), HasSubstr("cut off")));
-  EXPECT_TRUE(p.chosen.holds);
-  const Scene s = scene_from(p.chosen.text);
-  const double times = s.element_length / scene_from(bundle).element_length;
-  // Elements add as the square of their length, nodes and cutoff add theirs. The finest model is off itself by a
-  // third of what the default is.
-  const double standard = 0.004 / 3, found = standard * (times * times - 0.25) / 0.75 + 0.002 + 0.008;
-  EXPECT_NEAR(p.standard.error.at("energy"), standard, 1e-9);
-  EXPECT_NEAR(p.chosen.error.at("energy"), found, 1e-9);
-  EXPECT_NEAR(p.chosen.expect.at("energy"), found + standard / 3 + 0.001, 1e-9);
-  EXPECT_NEAR(p.chosen.expect.at("beta_deg"), 0.001, 1e-9);
-  // 19 bonds of the default's length become 10 (not 9.5) between the same ends.
-  EXPECT_NEAR(10 * s.element_length, 19 * scene_from(bundle).element_length, 1e-7);
-  EXPECT_NEAR(dynamic_cast<const RopeSource&>(*s.source).length, 11 * s.element_length, 1e-7);
-  EXPECT_GT(s.contact.cutoff, 2);
-  // Long elements have fewer bonds and pairs: the same dissipation per length needs other constants.
-  EXPECT_NEAR(s.damping.bond.rate, 1 / (times * times), 1e-5);
-  EXPECT_GT(s.damping.contact.eta, 0.7 * 20 * times * times);
-  EXPECT_LT(s.damping.contact.eta, 1.3 * 20 * times * times);
-}
-
-TEST(Plan, LeavesOutWhatDoesNotHoldTogether) {
-  MadeUp pilots;
-  pilots.seconds = usual_seconds;
-  // All three are off by 1.6 %, the two without the cutoff, which is the worst, by 0.8 %.
-  const Plan p = planned(bundle, 0.012, pilots);
-  EXPECT_THAT(p.chosen.name, AllOf(HasSubstr("twice"), HasSubstr("nodes"), Not(HasSubstr("cut off"))));
-  EXPECT_TRUE(p.chosen.holds);
-  EXPECT_LE(p.chosen.expect.at("energy"), 0.012);
-}
-
-TEST(Plan, KeepsTheDefaultWhereNothingIsGained) {
-  MadeUp pilots;
-  pilots.seconds = {{"half", 6}};
-  const Plan p = planned(bundle, 0.05, pilots);
-  EXPECT_EQ(p.chosen.name, "default");
-  pilots.failing = {"twice", "nodes", "cut off"};
-  pilots.seconds = usual_seconds;
-  const Plan q = planned(bundle, 0.05, pilots);
-  EXPECT_EQ(q.chosen.name, "default");
-  EXPECT_EQ(q.tried.front().failure, "a bond slipped");
-  pilots.failing = {"default"};
-  EXPECT_THROW(planned(bundle, 0.05, pilots), InputError);
-}
-
-TEST(Plan, GoesFinerWhereTheDefaultDoesNotHold) {
-  MadeUp pilots;
-  pilots.seconds = usual_seconds;
-  const Plan p = planned(bundle, 0.0026, pilots);
-  EXPECT_FALSE(p.standard.holds);
-  EXPECT_TRUE(p.chosen.holds);
-  EXPECT_EQ(p.chosen.name, "elements half as long");
-  const Plan none = planned(bundle, 0.0011, pilots);
-  EXPECT_FALSE(none.chosen.holds);
-  EXPECT_EQ(none.chosen.name, "elements half as long") << "the most accurate";
-  EXPECT_THAT(fmt::format("{}", fmt::join(none.remarks, "\n")), HasSubstr("No model that was tried holds 0.11 %"));
-}
-
-// A rope with noise is run with three seeds, whose differences are no error of a model.
-TEST(Plan, KnowsChanceFromError) {
-  MadeUp pilots;
-  pilots.chance = 0.03;
-  pilots.seconds = usual_seconds;
-  const std::string noisy = std::string(bundle).replace(bundle.find("length_nm"), 0, "perturbation_nm = 0.001\n");
-  const Plan p = planned(noisy, 0.02, pilots);
-  EXPECT_NEAR(p.scatter.at("energy"), 0.03, 1e-3);
-  EXPECT_TRUE(p.chosen.holds);
-  EXPECT_GT(p.chosen.expect.at("energy"), 2 * p.scatter.at("energy"));
-  EXPECT_THAT(fmt::format("{}", fmt::join(p.remarks, "\n")), HasSubstr("Chance alone makes runs differ by"));
-  EXPECT_TRUE(planned(bundle, 0.02, pilots).scatter.empty()) << "without noise there is no chance";
-}
-
-TEST(Plan, RunsASmallerSceneWhereTheWholeIsTooDear) {
-  MadeUp pilots;
-  const std::string rope = head +
-                           "[rope]\ntubes = 91\nlength_nm = 163\n[twist]\nmoment_nN_nm = 8\n"
-                           "rate_nN_nm_per_ps = 1\nhold_ps = 92\n";
-  const Plan p = plan_scene(scene_from(rope), {}, 1000, 100, std::ref(pilots));
-  EXPECT_THAT(p.pilots, HasSubstr("of 91 tubes"));
-  EXPECT_THAT(p.pilots, HasSubstr("of 163 nm"));
-  const Scene s = scene_from(p.standard.pilot_text), whole = scene_from(rope);
-  const double part = s.source->sizes(s.element_length).elements * s.element_length / 163;
-  const TwistLoad &twist = s.drives_of<TwistDrive>().at(0)->load, &slow = whole.drives_of<TwistDrive>().at(0)->load;
-  EXPECT_NEAR(twist.rate * part, slow.rate, 2e-2 * slow.rate) << "as fast for its length";
-  EXPECT_NEAR(twist.hold, 92 * part, 1);
-  EXPECT_EQ(twist.moment, slow.moment);
-  const Scene chosen = scene_from(p.chosen.text);
-  EXPECT_EQ(chosen.source->sizes(chosen.element_length).tubes, 91);
-  // The default is off by the found difference and a third more, by which the finest model is off itself.
-  const auto promise = [](const Plan& plan, double caution) {
-    return caution * (plan.standard.error.at("energy") * 4 / 3 + 1e-3);
-  };
-  EXPECT_NEAR(p.standard.expect.at("energy"), promise(p, 2), 1e-12) << "fewer tubes";
-  // Grips that name tubes by number leave only the time to be cut.
-  const std::string named = head +
-                            "[rope]\ntubes = 91\nlength_nm = 163\n[[grip]]\nend = \"lower\"\ntubes = [0, 90]\n"
-                            "[run]\nduration_ps = 50\n";
-  const Plan q = plan_scene(scene_from(named), {}, 1000, 100, std::ref(pilots));
-  EXPECT_THAT(q.pilots, HasSubstr("the first"));
-  EXPECT_NEAR(q.standard.expect.at("energy"), promise(q, 1.5), 1e-12);
-  // The finest model counts as five runs; the default, five changes and two runs of them together as one each.
-  EXPECT_NEAR(pilots.seen.back().until, 50 * 100.0 / (5 + 1 + 5 + 2) / 1000, 1e-6);
-}
-
-TEST(Plan, StartsFromTheDefaultWhateverTheSceneHas) {
-  MadeUp pilots;
-  const Plan p =
-      planned(bundle + "time_step_fs = 5\n[contact]\nnodes_per_element = 9\ncutoff_nm = 2.6\n", 0.01, pilots);
-  const Scene s = scene_from(p.standard.text);
-  EXPECT_EQ(s.run.time_step, 0);
-  EXPECT_EQ(s.contact.nodes, 0);
-  EXPECT_EQ(s.contact.cutoff, 0);
-}
-
-TEST(Plan, ForAnEndStateTimeIsFree) {
-  const std::string slow = head +
-                           "[rope]\ntubes = 7\nlength_nm = 27.2\n[[grip]]\nend = \"lower\"\n[[grip]]\n"
-                           "end = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [50, 20]] }\n";
-  MadeUp pilots;
-  pilots.seconds = {{"masses", 0.4}, {"relaxed", 0.2}, {"half", 6}};
-  const Plan motion = planned(slow, 0.02, pilots);
-  EXPECT_EQ(motion.chosen.text.find("\nmass_scale ="), std::string::npos);
-  EXPECT_THAT(fmt::format("{}", fmt::join(motion.remarks, "\n")), HasSubstr("give --end-state"));
-  PlanRequest end;
-  end.end_state = true;
-  const Plan p = planned(slow, 0.02, pilots, end);
-  EXPECT_GT(scene_from(p.chosen.text).run.mass_scale, 1);
-}
-
-TEST(Plan, DropsTheContactOfALoneTube) {
-  MadeUp pilots;
-  const Plan p = planned(lone, 0.05, pilots);
-  EXPECT_EQ(scene_from(p.standard.text).contact.law, "none");
-}
-
-TEST(Plan, RefusesObservablesThatTheLogLacks) {
-  MadeUp pilots;
-  PlanRequest request;
-  request.observables = {"energy", "colour"};
-  EXPECT_THROW(planned(bundle, 0.02, pilots, request), InputError);
-  request.observables = {"beta_deg"};
-  EXPECT_EQ(planned(bundle, 0.02, pilots, request).chosen.expect.size(), 1u);
-}
-
-TEST(Plan, IsRememberedInTheScene) {
-  const Expectations e{0.02, 12.5, {{"energy", 0.0123}, {"beta_deg", 0.004}}};
-  const Expectations read = expectations_of(expectation_lines(e) + bundle);
-  EXPECT_EQ(read.asked, e.asked);
-  EXPECT_EQ(read.seconds, e.seconds);
-  EXPECT_EQ(read.errors, e.errors);
-  EXPECT_TRUE(expectations_of(bundle).errors.empty());
-}
-
-TEST(Plan, StoredScenesAreReadAndBuilt) {
-  int scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ROPEWALK_SOURCE_DIR "/data/plans/scenes")) {
-    Scene scene = read_scene(entry.path().string());
-    EXPECT_NO_THROW(prepare(scene)) << entry.path();
-    ++scenes;
-  }
-  EXPECT_EQ(scenes, 16);
-}
 
 // An outcome is a mean over the last quarter. The error of a small part of the energy is relative to a tenth of the
 // energy.
@@ -350,14 +128,12 @@ TEST(Dissipation, BelongsToALengthOfTube) {
 
 TEST(SceneEdit, SetsKeysAndKeepsTheRest) {
   const std::string text = "a = 1\n# b = 2  # two\n\n[one]  # first\nc = 3\n# d = 4\n[[load]]\nc = 9\n[two]\n";
-  EXPECT_EQ(with_key(text, "", "a", "5"), "a = 5  # planned\n" + text.substr(6));
-  EXPECT_THAT(with_key(text, "", "b", "5"), HasSubstr("a = 1\nb = 5  # planned\n\n[one]"));
-  EXPECT_THAT(with_key(text, "one", "c", "5"), HasSubstr("# first\nc = 5  # planned\n# d = 4\n[[load]]\nc = 9\n"));
-  EXPECT_THAT(with_key(text, "one", "d", "5"), HasSubstr("c = 3\nd = 5  # planned\n[[load]]"));
-  EXPECT_THAT(with_key(text, "two", "c", "5"), HasSubstr("c = 9\n[two]\nc = 5  # planned\n"));
-  EXPECT_THAT(with_key(text, "three", "c", "5"), HasSubstr("[two]\n\n[three]\nc = 5  # planned\n"));
-  EXPECT_THAT(without_key(text, "one", "c"), HasSubstr("[one]  # first\n# c = 3\n"));
-  EXPECT_EQ(without_key(text, "two", "c"), text);
+  EXPECT_EQ(with_key(text, "", "a", "5"), "a = 5\n" + text.substr(6));
+  EXPECT_THAT(with_key(text, "", "b", "5"), HasSubstr("a = 1\nb = 5\n\n[one]"));
+  EXPECT_THAT(with_key(text, "one", "c", "5"), HasSubstr("# first\nc = 5\n# d = 4\n[[load]]\nc = 9\n"));
+  EXPECT_THAT(with_key(text, "one", "d", "5"), HasSubstr("c = 3\nd = 5\n[[load]]"));
+  EXPECT_THAT(with_key(text, "two", "c", "5"), HasSubstr("c = 9\n[two]\nc = 5\n"));
+  EXPECT_THAT(with_key(text, "three", "c", "5"), HasSubstr("[two]\n\n[three]\nc = 5\n"));
 }
 
 TEST(SceneEdit, SetsValuesAtPathsAndKeepsTheRest) {
@@ -416,9 +192,9 @@ TEST(SpotCheck, LooksAtSpacingAndEndAngleOfARope) {
   const SpotCheck check = spot_check(scene, p, wound(p.state, 0.02, 0), 0.2);
   const SpotCheck::Comparison spacing = check.observables.at("spacing"),
                               angle = check.observables.at("geometric_twist_deg");
-  EXPECT_NEAR(spacing.planned, p.spacing, 0.01 * p.spacing);
+  EXPECT_NEAR(spacing.here, p.spacing, 0.01 * p.spacing);
   EXPECT_LT(spacing.error(), 2e-3);
-  EXPECT_NEAR(angle.planned, 0.02 * 13.6 / units::degree, 2);
+  EXPECT_NEAR(angle.here, 0.02 * 13.6 / units::degree, 2);
   EXPECT_LT(angle.error(), 0.05);
 }
 

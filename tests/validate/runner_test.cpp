@@ -208,7 +208,7 @@ TEST(ValidationCases, AreRegisteredByEveryFile) {
   std::size_t files = 0;
   for (const char* group : {"theory", "atoms", "codes", "stability"})
     for (const auto& file :
-         std::filesystem::directory_iterator(std::string(ROPEWALK_SOURCE_DIR "/validate/cases/") + group))
+         std::filesystem::recursive_directory_iterator(std::string(ROPEWALK_SOURCE_DIR "/validate/cases/") + group))
       files += file.path().extension() == ".cpp";
   EXPECT_EQ(all_cases().size(), files);
 }

@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "core/case_text.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/error.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -21,6 +23,29 @@ std::vector<Case (*)()>& registered_cases() {
 std::string change_name(const char* quantity, double factor) {
   if (factor == 1) return "";
   return fmt::format("{}_{}_{:.0f}_percent_", quantity, factor > 1 ? "plus" : "minus", 100 * std::fabs(factor - 1));
+}
+
+Case::Group group_of(const CaseText& text) {
+  for (const auto& [name, group] :
+       {std::pair("theory", Case::Group::theory), std::pair("atoms", Case::Group::atoms),
+        std::pair("codes", Case::Group::codes), std::pair("stability", Case::Group::stability)})
+    if (text.group == name) return group;
+  throw InputError({text.group + "/" + text.name, 0, ""}, "is not in the folder of a group",
+                   "move it to theory, atoms, codes or stability");
+}
+
+Case with_text(Case c) {
+  const CaseText* text = find_case_text(c.name);
+  if (!text)
+    throw InputError({c.name + "/case.md", 0, ""}, "is missing", "write it in the folder of the case's name");
+  c.group = group_of(*text);
+  c.title = text->title;
+  c.why = text->why;
+  c.setup = text->setup;
+  c.oracle = text->oracle;
+  c.literature = text->literature;
+  c.remarks = text->remarks;
+  return c;
 }
 
 }  // namespace
@@ -93,6 +118,7 @@ std::string tube_names(const std::vector<ParameterSet>& sets) {
 
 CaseResult run_case(const Case& c, const CaseContext& context) {
   CaseResult result = c.run(context);
+  result.remarks.insert(result.remarks.begin(), c.remarks.begin(), c.remarks.end());
   for (const CaseTube& tube : context.tubes()) result.sources.push_back(tube.source);
   for (const Case::KnownMiss& miss : c.known_misses)
     for (Check& check : result.checks)
@@ -118,7 +144,7 @@ RegisteredCase::RegisteredCase(Case (*make)()) { registered_cases().push_back(ma
 const std::vector<Case>& all_cases() {
   static const std::vector<Case> cases = [] {
     std::vector<Case> made;
-    for (const auto make : registered_cases()) made.push_back(make());
+    for (const auto make : registered_cases()) made.push_back(with_text(make()));
     return sorted_cases(std::move(made));
   }();
   return cases;

@@ -1,6 +1,7 @@
 // A validation case asks one physical question. It has a set-up, an oracle and tolerances, all fixed before the
 // case is run. A case runs the model, compares its numbers with the oracle and returns checks and figures; it never
-// prints and never decides what a miss leads to. Every case is one file of validate/cases/ that registers itself.
+// prints and never decides what a miss leads to. Every case is a folder of validate/cases/: `case.md`, its prose,
+// `scene.toml` where its specimen is a scene, and `case.cpp`, its oracle and checks, which registers it.
 #pragma once
 
 #include <functional>
@@ -18,8 +19,8 @@ namespace ropewalk::validate {
 // One number compared with its oracle.
 struct Check {
   std::string name;      // "EA of the chain"
-  double value = 0;      // of the model
-  double reference = 0;  // of the oracle
+  double value = 0;      // result of the model
+  double reference = 0;  // result of the oracle
   double tolerance = 0;  // largest difference allowed
   bool relative = true;  // tolerance over |reference|; otherwise in the unit
   std::string unit;
@@ -48,7 +49,7 @@ struct Limit {
   // The response of `run` there: it does not start, it ends with the reason, it warns, or it does nothing.
   enum class Guard { refused, stopped, told, none };
   std::string method;  // "time step of a single tube"
-  double found = 0;    // by bisection on the method itself
+  double found = 0;    // place found by bisection on the method itself
   double theory = 0;
   std::string unit;
   Guard guard = Guard::none;
@@ -104,7 +105,7 @@ struct NotApplicable : std::runtime_error {
 
 // One tube of a case.
 struct CaseTube {
-  ParameterSet set;    // of the oracle
+  ParameterSet set;    // set of the oracle
   ParameterSet model;  // the same with the fault
   std::string name;    // "(10,10)"
   std::string source;  // "cnt-10-10-tersoff (hash ...)", for CaseResult::sources
@@ -152,7 +153,7 @@ struct Case {
   // The contact law that the case uses: sets without it cannot run it.
   enum class Law { none, line, paper };
 
-  std::string name;  // "euler-buckling", on the command line and of files
+  std::string name;  // "euler-buckling", on the command line and of files; the folder's name
   Group group = Group::theory;
   int order = 0;  // place within the group in lists and reports; equal places go by name
   Tier tier = Tier::quick;
@@ -164,13 +165,14 @@ struct Case {
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;
-  // Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas stand between
-  // backquotes in these texts, in notes, in captions and in remarks. report/formula.hpp has their grammar.
+  // From case.md. Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas
+  // stand between backquotes in these texts, in notes and in captions. report/formula.hpp has their grammar.
   std::string title;
   std::string why;         // why it matters in a rope
   std::string setup;       // the specimen and its loads
   std::string oracle;      // what the model is compared with, with the equation
   std::string literature;  // citation with DOI
+  std::vector<std::string> remarks;
   std::function<CaseResult(const CaseContext&)> run;
   // Cases against atoms: their tables of references (see reference.hpp), and about how long LAMMPS takes for those
   // of one tube, s of one core.
@@ -190,7 +192,8 @@ struct Case {
   std::vector<KnownMiss> known_misses;
 };
 
-// Registers a case before main() begins. Write one at the end of a case's file:
+// Registers a case before main() begins. Write one at the end of case.cpp; case.md and the folder's name say the
+// rest:
 //
 //   const RegisteredCase registered([] {
 //     Case c;

@@ -151,7 +151,7 @@ std::string case_html(const Outcome& o, Figures& figures) {
 
 // --- The map of all limits --------------------------------------------------------------------------------
 
-constexpr double agreement = 0.05;       // of found and theory, as the cases require
+constexpr double agreement = 0.05;       // relative difference of found and theory that the cases allow
 constexpr double drawn = 2 * agreement;  // half the width of the strip
 
 // Found over theory, as a dot on a strip with a band of the allowed values.
@@ -232,8 +232,7 @@ std::string lead(const std::vector<Outcome>& outcomes) {
   if (apart > 0) text += fmt::format("; {} are not applicable to this set, for the reasons given", apart);
   return text +
          ". A case holds if every number of the model lies within its tolerance. Tolerances were fixed before the "
-         "cases were run, but for a case that says why its own was not, and no reference was used in a fit. A case "
-         "that misses names the assumption that fails.";
+         "cases were run, and no reference was used in a fit. A case that misses names the assumption that fails.";
 }
 
 PageTop top_of(const std::vector<Outcome>& outcomes) {

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
@@ -93,15 +94,6 @@ void append_element(Buffer& out, const Topology& topology, const State& state, i
 
 // Thrown and caught in this file: the dump ends within a frame.
 struct CutOff {};
-
-std::string_view next_word(std::string_view& text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
-  text.remove_prefix(begin);
-  const std::size_t end = std::min(text.find_first_of(" \t\r"), text.size());
-  const std::string_view word = text.substr(0, end);
-  text.remove_prefix(end);
-  return word;
-}
 
 template <class T>
 bool parse(std::string_view word, T& value) {

@@ -44,6 +44,7 @@ def _load_core() -> None:
 _load_core()
 
 from ._core import version as __version__  # noqa: E402
+from .atoms import Atoms, atoms, atoms_universe, coarsen  # noqa: E402
 from .energy import StateEnergy, energy  # noqa: E402
 from .errors import Error, InputError, NumericalError, ProgramError  # noqa: E402
 from .frames import Frame, Frames  # noqa: E402
@@ -51,7 +52,7 @@ from .log import Log, Mean  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
 from .parameters import ParameterSet, Quantity, parameter_sets  # noqa: E402
 from .programs import (  # noqa: E402
-    calibrate, compare, convert, errors, gather, modes, parametrize, picture, plan, rest, sweep, threshold,
+    calibrate, compare, convert, errors, gather, modes, parametrize, picture, rest, sweep, threshold,
     validate, view,
 )
 from .results import Campaign, Check, ValidationCase  # noqa: E402
@@ -63,11 +64,11 @@ from .state import Elements, Instant, State, write_state  # noqa: E402
 from .threads import set_threads, threads  # noqa: E402
 
 __all__ = [
-    "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit", "Log",
-    "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
-    "Simulation", "State", "StateEnergy", "ValidationCase", "calibrate", "compare", "convert", "energy", "errors", "gather",
-    "modes", "observables", "open", "parameter_sets", "parametrize", "picture", "plan", "rest", "resume", "run", "set_threads", "sweep",
-    "threads", "threshold", "validate", "view", "write_state",
+    "Atoms", "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit",
+    "Log", "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
+    "Simulation", "State", "StateEnergy", "ValidationCase", "atoms", "atoms_universe", "calibrate", "coarsen",
+    "compare", "convert", "energy", "errors", "gather", "modes", "observables", "open", "parameter_sets", "parametrize",
+    "picture", "rest", "resume", "run", "set_threads", "sweep", "threads", "threshold", "validate", "view", "write_state",
 ]
 
 

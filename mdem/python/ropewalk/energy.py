@@ -59,7 +59,7 @@ def energy(
         state: a state file (CSV), the state of a simulation, a frame, or a scene (its start) or simulation
         parameters: a parameter set, or one for each type of tube; None: bonds, contacts, friction, links and broken tubes
             of the scene at its start, or of the simulation as they are now
-        tube_types: which of the sets each tube is, from 0; empty: all the first (no unit)
+        tube_types: number of the parameter set of each tube, from 0; empty: all 0 (no unit)
         law: contact law "line", "paper" or "none"; None: line where the set has it
         bond: "harmonic" or "anharmonic"; None: anharmonic where the set has it
         legacy_torque: leaves out the torque that the published code leaves out

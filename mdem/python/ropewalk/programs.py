@@ -219,39 +219,6 @@ def threshold(
         return table_of(read.read())
 
 
-def plan(
-    scene: SceneLike,
-    *,
-    error: float = 0.02,
-    observables: Sequence[str] = (),
-    end_state: bool = False,
-    pilot_seconds: Optional[float] = None,
-    jobs: Optional[int] = None,
-) -> Scene:
-    """The scene with the cheapest model that holds an error, as `ropewalk plan`. What it found is logged, and stands in the
-    comments of the scene's text.
-
-    Arguments:
-        scene: a scene, a dict of its keys (units stand in their names), or a file
-        error: largest relative error of each observable (no unit)
-        observables: "energy", or columns of log.csv; empty: energies, twist angle, torque, tension
-        end_state: only the end is asked for, not the motion
-        pilot_seconds: processor time for all pilots, about, s; None: a tenth of the run's, or a minute of each core
-        jobs: pilots at a time; None: one for each core (no unit)
-    """
-    with tempfile.TemporaryDirectory(prefix="ropewalk-") as folder:
-        given, planned = os.path.join(folder, _SCENE), os.path.join(folder, "planned.toml")
-        with open(given, "w", encoding="utf-8") as file:
-            file.write(toml_of(as_scene(scene)._whole_keys()))
-        words = ["--observables", *observables] if observables else []
-        told = _call(["plan", given, "-o", planned, *_options(error=repr(error), end_state=end_state,
-                                                              pilot_seconds=pilot_seconds, jobs=jobs), *words])
-        for line in told.splitlines():
-            _log.info(line)
-        with open(planned, encoding="utf-8") as file:
-            return Scene.from_toml(file.read())
-
-
 def _directory(run: Run | str | os.PathLike[str]) -> str:
     return run.path if isinstance(run, Run) else os.fspath(run)
 
@@ -376,7 +343,7 @@ def errors(
     jobs: Optional[int] = None,
     again: bool = False,
 ) -> dict[str, Any]:
-    """Errors of a finished run's results that follow from those of its sets, files of friction and typed numbers, as
+    """Error bars of a finished run, from the standard errors of its parameter sets, friction files and scene numbers, as
     `ropewalk errors`, which repeats the run: what `--json` says, with units in the names.
 
     Arguments:

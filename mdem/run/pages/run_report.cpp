@@ -13,9 +13,9 @@
 #include "report/report.hpp"
 #include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"
-#include "run/plan_check.hpp"
 #include "run/results.hpp"
 #include "run/run_directory.hpp"
+#include "scene/ends/periodic.hpp"
 #include "scene/network_words.hpp"
 #include "scene/scene_to_model.hpp"
 #include "sim/dynamics/end_drives.hpp"
@@ -82,6 +82,26 @@ void add_strength(const Scene& scene, ReportInput& in) {
                       fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
                                   last["links_formed"], last["bonds_broken"]),
                       "events.csv says when and where"});
+}
+
+// What an experimenter knows of a yarn. Turns per metre say nothing of a rope that has ends: its own are a million
+// times as many.
+void add_size(const Scene& scene, const Observer& observer, ReportInput& in) {
+  if (!in.rope) return;
+  if (const std::string words = size_words(observer.size); !words.empty()) {
+    const std::size_t colon = words.find(": ");
+    in.facts.push_back({"size", words.substr(0, colon), words.substr(colon + 2)});
+  }
+  const auto slices = scene.drives_of<PeriodicDrive>();
+  if (slices.empty() || in.log.empty() || !std::isfinite(in.log.back()["beta_deg"])) return;
+  constexpr double usual = 20e3, um = 1e3;  // nm
+  const double typed = slices.front()->load.yarn_diameter, diameter = typed > 0 ? typed : usual,
+               beta = in.log.back()["beta_deg"] * units::degree;
+  in.facts.push_back(
+      {"as a yarn",
+       fmt::format("{:.4g} turns per metre at a diameter of {:.4g} µm", 1e9 * yarn_turns(beta, diameter),
+                   diameter / um),
+       "by tan β = π d T, with the β of the last row; yarn_diameter_um in [periodic] names another"});
 }
 
 // Of a film: how its tubes hang together, at first and in the end.
@@ -153,8 +173,6 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   in.errors = read_run_errors(dir.path, in.log);
   in.whole = read_numeric_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);
-  if (const std::string words = plan_words(dir, scene, m); !words.empty())
-    in.error_bars.insert(in.error_bars.begin(), words);
   in.ramp_end_ps = whole_from(end_drives(p.loads, p.topology));
   in.tube_radius = p.topology.largest_radius();
   in.spacing = p.spacing;
@@ -169,6 +187,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   add_strength(scene, in);
   const Observer observer = make_observer(scene, p);
   in.rope = is_rope(p, observer);
+  add_size(scene, observer, in);
   in.loaded = !p.loads.empty();
   in.shells = observer.shells;
   const StoredEvents events(dir.events(), p.topology);

@@ -19,9 +19,6 @@ class ThermostatDrive : public Drive {
   std::string not_for_lammps() const override {
     return make_thermostat(options)->acts_by_element() ? "" : "thermostat.method";
   }
-  std::optional<std::vector<std::pair<std::string, double>>> hastened(double) const override {
-    return std::vector<std::pair<std::string, double>>();
-  }
 };
 
 }  // namespace ropewalk

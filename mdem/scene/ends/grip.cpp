@@ -488,7 +488,7 @@ const KeyTable<GripLoad>& table_of_grip() {
   using Key = KeyOf<GripLoad>;
   static const KeyTable<GripLoad> table = {
       "grip",
-      "any number of these: one end in a clamp; what is not said is held",
+      "any number of these: a clamp on one end of the tubes; motions that are not named are held",
       {Key::custom(
            "end", "", required("\"upper\""),
            "\"lower\": holds the first elements; \"upper\": holds the last ones; \"both\": the keys describe the "

@@ -10,17 +10,28 @@
 #include "model/error.hpp"
 #include "scene/drive_kind.hpp"
 #include "scene/key_table.hpp"
+#include "scene/kinds/rope.hpp"
 #include "scene/loads/load_kind.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_place.hpp"
 #include "scene/schedule_rows.hpp"
+#include "scene/spacing.hpp"
 
 namespace ropewalk {
 namespace {
 
+constexpr double per_m = 1e-9, um = 1e3;  // 1/nm, nm
+
 void read_twist(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  if (!t.has("twist_deg_per_nm")) return;
   load.twist = points_in_time(t, "twist_deg_per_nm", Bounds::range(-45, 45));
   for (Schedule::Point& p : load.twist) p.value *= units::degree;
+}
+
+void read_turns(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  if (!t.has("turns_per_m")) return;
+  load.turns = points_in_time(t, "turns_per_m", Bounds::range(-1e9, 1e9));
+  for (Schedule::Point& p : load.turns) p.value *= per_m;
 }
 
 void read_strain(const TomlTable& t, const Scene&, PeriodicLoad& load) {
@@ -33,7 +44,28 @@ void read_tension(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   for (Schedule::Point& p : load.tension) p.value *= units::nN_nm;
 }
 
+// Of the angle of a yarn's surface.
+double slope(double turns, double diameter) { return units::pi * diameter * turns; }
+
+void check_turns(const TomlTable& t, const PeriodicLoad& load) {
+  if (t.has("turns_per_m") == t.has("twist_deg_per_nm"))
+    throw t.error("twist_deg_per_nm",
+                  t.has("turns_per_m") ? "stands beside turns_per_m, which says the same of a yarn" : "is missing",
+                  "give twist_deg_per_nm, or turns_per_m and yarn_diameter_um");
+  if (load.turns.empty()) return;
+  if (!(load.yarn_diameter > 0))
+    throw t.error("yarn_diameter_um", "is missing", "turns_per_m needs it: the angle is that of a yarn so thick");
+  for (const Schedule::Point& p : load.turns)
+    if (const double steep = std::fabs(slope(p.value, load.yarn_diameter)); steep > 1)
+      throw t.error("turns_per_m",
+                    fmt::format("lays the surface of the yarn at {:.3g} degrees to its axis",
+                                std::atan(steep) / units::degree),
+                    fmt::format("at most 45 degrees, {:.4g} turns per metre, can be built",
+                                1 / slope(per_m, load.yarn_diameter)));
+}
+
 void check_slice(const TomlTable& t, const Scene&, PeriodicLoad& load) {
+  check_turns(t, load);
   if (load.strain.empty() || load.strain.front().value == 0) return;
   throw t.error("strain", fmt::format("begins with {:.4g}", load.strain.front().value),
                 "begin with 0: it counts from the length at that time on");
@@ -79,9 +111,15 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                      "as many as the contact reaches, also at the least strain; where tubes end inside, 5 nm and a "
                      "tenth of a tube more"),
            "elements at each end of a tube that are images of the other end; the period is what lies between"),
-       Key::custom("twist_deg_per_nm", "deg/nm", required("[[0, 0], [100, 1.5]]"),
+       Key::custom("twist_deg_per_nm", "deg/nm", otherwise("[[0, 0], [100, 1.5]]", "required but for turns_per_m"),
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)
            .of_pace(SceneKey::Pace::course),
+       Key::custom("turns_per_m", "1/m", otherwise("[[0, 0], [100, 2000]]", "twist_deg_per_nm"),
+                   "instead: turns per metre of a yarn in time; the outermost tubes get the angle of its surface",
+                   read_turns)
+           .of_pace(SceneKey::Pace::course),
+       Key::number("yarn_diameter_um", {"um", um}, Bounds::positive(1e6), &PeriodicLoad::yarn_diameter,
+                   otherwise("20", "none"), "diameter of that yarn; reports name turns per metre for it"),
        Key::custom("strain", "", otherwise("[[100, 0], [300, 0.02]]", "none"),
                    "strain of the slice against time, [[ps, strain], ...], from the first of these times on",
                    read_strain)
@@ -111,8 +149,15 @@ DriveKind periodic_drive() {
 SceneTable PeriodicDrive::table() const { return periodic_table().doc(); }
 
 std::string PeriodicDrive::words() const {
-  std::string text = fmt::format("periodic: a slice of an endless rope, twisted to {:.4g} deg/nm in {:.4g} ps",
-                                 load.twist.back().value / units::degree, load.twist.back().time);
+  std::string text = "periodic: a slice of an endless rope, twisted ";
+  if (load.turns.empty())
+    text += fmt::format("to {:.4g} deg/nm in {:.4g} ps", load.twist.back().value / units::degree,
+                        load.twist.back().time);
+  else
+    text += fmt::format(
+        "to {:.4g} degrees at its surface in {:.4g} ps, as a yarn of {:.4g} um is by {:.4g} turns per metre",
+        std::atan(slope(load.turns.back().value, load.yarn_diameter)) / units::degree, load.turns.back().time,
+        load.yarn_diameter / um, load.turns.back().value / per_m);
   if (!load.tension.empty()) {
     Schedule pull(load.tension);
     text += fmt::format(", its length free under {:.4g} nN{}", pull.last() / units::nN_nm,
@@ -135,12 +180,42 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
              "the slice has no ends; give twist_deg_per_nm, and read the torque in the log");
     if (drive->ends() == Ends::clamped) refuse(drive->table().header(), "the slice has no ends to be clamped");
   }
+  if (scene.run.mode == RunOptions::Mode::relax && scene.run.solver == RunOptions::Solver::fire)
+    throw top.table("periodic")
+        .error("", "does not go with run.solver = \"fire\": forces on images are not those of a slice's energy",
+               "take solver = \"newton\", or mode = \"dynamics\"");
   if (scene.kind != "rope") refuse("[" + scene.kind + "]", "tubes must be parallel and alike; it needs a [rope]");
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  if (load.turns.empty() || !rope) return;
+  const TomlTable table = top.table("periodic");
+  const char* remedy = "give twist_deg_per_nm";
+  if (rope->draws_together(scene.sets.size() > 1))
+    throw table.error("turns_per_m", "needs the radius of the rope, and the tubes of this one first move together",
+                      remedy);
+  if (rope->tubes == 1)
+    throw table.error("turns_per_m",
+                      "needs the angle of outermost tubes: a single tube has no angle at its surface", remedy);
 }
+
+namespace {
+
+// nm, of the axes of the outermost tubes from that of the rope.
+double rim_of(const Scene& scene, const Interaction& interaction) {
+  const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
+  if (!rope) return 0;
+  const double spacing =
+      rope->typed_spacing() > 0 ? rope->typed_spacing() : parallel_spacing(scene, interaction.law.get());
+  double rim = 0;
+  for (const auto& [x, y] : rope->places(spacing, scene.start.seed)) rim = std::max(rim, std::hypot(x, y));
+  return rim;
+}
+
+}  // namespace
 
 void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,
                               LoadsAndConstraints& loads) const {
-  loads.add(load.on_tubes(topology, interaction.cutoff(), scene.path));
+  const double rim = load.turns.empty() ? 0 : rim_of(scene, interaction);
+  loads.add(load.on_tubes(topology, interaction.cutoff(), rim, scene.path));
 }
 
 // Refuses loads on images: an image moves with its original, whatever load acts on the image.
@@ -196,6 +271,11 @@ std::optional<LoadEffect> PeriodicLoad::effect() const {
   return out;
 }
 
+std::string PeriodicLoad::needs_time() const {
+  const bool moves = !Schedule(twist).constant() || !Schedule(strain).constant() || !Schedule(tension).constant();
+  return moves ? "the images of a periodic slice follow it in time" : "";
+}
+
 std::vector<int> PeriodicLoad::reads(const Topology& topology) const {
   std::vector<int> originals;
   for (const int image : elements) originals.push_back(topology.original_of(image));
@@ -203,7 +283,7 @@ std::vector<int> PeriodicLoad::reads(const Topology& topology) const {
 }
 
 double PeriodicLoad::lasts() const {
-  double last = twist.back().time;
+  double last = (turns.empty() ? twist : turns).back().time;
   for (const auto* points : {&strain, &tension})
     if (!points->empty()) last = std::max(last, points->back().time);
   return last;
@@ -213,8 +293,14 @@ int PeriodicDrive::images(double reach) const {
   return load.images > 0 ? load.images : images_within(reach, least_of(load.strain));
 }
 
-PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, const std::string& path) const {
+PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, double rim,
+                                    const std::string& path) const {
   PeriodicLoad out = *this;
+  if (!turns.empty()) {
+    ROPEWALK_EXPECTS(rim > 0);
+    out.twist = turns;
+    for (Schedule::Point& p : out.twist) p.value = slope(p.value, yarn_diameter) / rim;
+  }
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;
   double stiffness = 0;  // eV/nm, of all strands
@@ -243,7 +329,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, cons
   // Twice what a wave needs along the period, so that the interior follows, however many images there are.
   const double twist_wave = std::sqrt(type.bond.twist / (type.inertia / a)),
                stretch_wave = std::sqrt(type.bond.stretch / (type.mass / a));
-  out.schedule_ = Schedule(twist, 2 * out.period_ / twist_wave);
+  out.schedule_ = Schedule(out.twist, 2 * out.period_ / twist_wave);
   if (!strain.empty()) out.stretched_ = Schedule(strain, 2 * out.period_ / stretch_wave);
   if (!tension.empty()) out.pulled_ = Schedule(tension);
   for (int first = 0; first < topology.elements(); first += all)
@@ -269,14 +355,20 @@ PeriodicLoad::Length PeriodicLoad::measured(const Topology& topology, const Stat
   return {sum.now / mass, sum.rate / mass};
 }
 
+// Before all motion (sim/dynamics/loads.hpp) the schedules stand.
+PeriodicLoad::When PeriodicLoad::when(double time, double ahead, const State& s) {
+  const bool still = time < 0;
+  return {still ? s.time : time, 2 * ahead, still};
+}
+
 // A length that no tension has moved is that of its schedule to the last digit.
-PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, double time, double drift, const State& s,
+PeriodicLoad::Length PeriodicLoad::length_after(const Topology& topology, const When& w, const State& s,
                                                 double more) const {
-  const double then = time + drift, rate = period_ * stretched_.rate(time);
-  if (tension.empty()) return {period_ * (1 + stretched_.value(then)), rate};
+  const double rate = w.still ? 0 : period_ * stretched_.rate(w.time);
+  if (tension.empty()) return {period_ * (1 + stretched_.value(w.then())), rate};
   const Length now = measured(topology, s);
-  if (is_free(time)) return {now.now + drift * (now.rate + more), now.rate + more};
-  return {now.now + period_ * (stretched_.value(then) - stretched_.value(time)), rate};
+  if (is_free(w.time)) return {now.now + w.drift * (now.rate + more), now.rate + more};
+  return {now.now + period_ * (stretched_.value(w.then()) - stretched_.value(w.time)), rate};
 }
 
 void PeriodicLoad::add_forces(const State&, double time, std::vector<PointLoad>& out) const {
@@ -316,14 +408,15 @@ void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
 }
 
 // So that the drift with these velocities leads to where the image will be.
-void PeriodicLoad::follow(int image, int original, double sign, double time, double drift, const Length& length,
+void PeriodicLoad::follow(int image, int original, double sign, const When& when, const Length& length,
                           State& s) const {
+  const double drift = when.drift;
   const auto i = static_cast<std::size_t>(image), o = static_cast<std::size_t>(original);
   const Vector3 v = s.velocity[o], w = s.angular_velocity[o], x = s.position[o];
-  const double turned = sign * period_ * schedule_.value(time + drift);
+  const double turned = sign * period_ * schedule_.value(when.then());
   const Eigen::Matrix3d r = about_z(turned);
   if (drift <= 0) {
-    const Vector3 spin(0, 0, sign * period_ * schedule_.rate(time));
+    const Vector3 spin(0, 0, when.still ? 0 : sign * period_ * schedule_.rate(when.time));
     s.velocity.set(i, r * v + spin.cross(r * x) + Vector3(0, 0, sign * length.rate));
     s.angular_velocity.set(i, r * w + spin);
     return;
@@ -340,14 +433,15 @@ void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
     for (const int image : ends_[end]) act(image, topology.original_of(image), end == upper_end ? 1.0 : -1.0);
 }
 
-void PeriodicLoad::lead(const Topology& topology, double time, double drift, const Length& length, State& s) const {
+void PeriodicLoad::lead(const Topology& topology, const When& when, const Length& length, State& s) const {
   for_images(topology,
-             [&](int image, int original, double sign) { follow(image, original, sign, time, drift, length, s); });
+             [&](int image, int original, double sign) { follow(image, original, sign, when, length, s); });
 }
 
 void PeriodicLoad::constrain(const Topology& topology, double time, double ahead, State& s) const {
   check_reach(topology, s);
-  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s), s);
+  const When w = when(time, ahead, s);
+  lead(topology, w, length_after(topology, w, s), s);
 }
 
 // The kick has moved images and originals by the forces on each, and the measured L' with them.
@@ -362,7 +456,8 @@ void PeriodicLoad::constrain_after(const Forces& total, double dt, const Topolog
     mass += topology.type_of_element(image).mass;
   });
   const double more = dt * (pull / topology.groups.period_inertia - moved / mass);
-  lead(topology, time, 2 * ahead, length_after(topology, time, 2 * ahead, s, more), s);
+  const When w = when(time, ahead, s);
+  lead(topology, w, length_after(topology, w, s, more), s);
 }
 
 void PeriodicLoad::wind(State& s) const {

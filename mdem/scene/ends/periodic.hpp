@@ -31,13 +31,16 @@ namespace ropewalk {
 class PeriodicLoad : public Load {
  public:
   int images = 0;                        // elements at each end of a tube; 0: as the contact needs
-  std::vector<Schedule::Point> twist;    // rad/nm
+  std::vector<Schedule::Point> twist;    // rad/nm; from the start, or chosen by turns
+  std::vector<Schedule::Point> turns;    // 1/nm, of a yarn whose surface has the angle of this one; none: by twist
+  double yarn_diameter = 0;              // nm; 0: none is typed
   std::vector<Schedule::Point> strain;   // of the period; none: it stays
   std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
 
-  // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres. Throws
-  // InputError where the images do not reach as far.
-  PeriodicLoad on_tubes(const Topology& topology, double reach, const std::string& path) const;
+  // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres; `rim`
+  // (nm): where the axes of the outermost tubes stand, for turns. Throws InputError where the images do not reach
+  // as far.
+  PeriodicLoad on_tubes(const Topology& topology, double reach, double rim, const std::string& path) const;
   // Winds straight tubes evenly about the z axis where the slice is twisted from the start.
   void wind(State&) const;
   // Puts the images where they belong.
@@ -53,7 +56,7 @@ class PeriodicLoad : public Load {
   void constrain_after(const Forces& total, double dt, const Topology&, double time, double ahead,
                        State&) const override;
   void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
-  std::string needs_time() const override { return "the images of a periodic slice follow it in time"; }
+  std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
   // The images.
   void add_ends(EndElements& ends) const override {
@@ -74,12 +77,20 @@ class PeriodicLoad : public Load {
     double now = 0, rate = 0;
   };
   Length measured(const Topology&, const State&) const;
+  // When constraints act. `still`: the schedules stand as they are at `time`, and only what is free moves.
+  struct When {
+    double time = 0, drift = 0;  // ps
+    bool still = false;
+
+    double then() const { return still ? time : time + drift; }
+  };
+  static When when(double time, double ahead, const State&);
   // L at the end of a drift from `time` on, and L' at `time`, which a free length has more than measured.
-  Length length_after(const Topology&, double time, double drift, const State&, double more = 0) const;
+  Length length_after(const Topology&, const When&, const State&, double more = 0) const;
   bool is_free(double time) const { return !tension.empty() && (strain.empty() || time < strain.front().time); }
   void check_reach(const Topology&, const State&) const;
-  void lead(const Topology&, double time, double drift, const Length& then, State&) const;
-  void follow(int image, int original, double sign, double time, double drift, const Length& then, State&) const;
+  void lead(const Topology&, const When&, const Length& then, State&) const;
+  void follow(int image, int original, double sign, const When&, const Length& then, State&) const;
 
   Schedule schedule_;            // of tau, smoothed
   Schedule stretched_, pulled_;  // of strain, smoothed, and of tension
@@ -95,6 +106,7 @@ class PeriodicDrive : public Drive {
   std::string words() const override;
   void refuse(const TomlTable& top, const Scene&) const override;
   std::string needs_time() const override { return load.needs_time(); }
+  bool goes_by_load_steps() const override { return true; }
   double lasts() const override { return load.lasts(); }
   int images(double reach) const override;
   void add_loads(const Scene&, const Topology&, const Interaction&, LoadsAndConstraints&) const override;

@@ -177,16 +177,6 @@ void TwistDrive::refuse_start(const Scene& scene, const Topology& topology, cons
   refuse_end_moment(scene, topology, loads, "twist.moment_nN_nm");
 }
 
-std::optional<std::vector<std::pair<std::string, double>>> TwistDrive::hastened(double part) const {
-  std::vector<std::pair<std::string, double>> keys = {{"twist.hold_ps", load.hold * part}};
-  if (load.rate > 0) keys.emplace_back("twist.rate_nN_nm_per_ps", load.rate / units::nN_nm / part);
-  if (load.unload_rate > 0) {
-    keys.emplace_back("twist.unload_rate_nN_nm_per_ps", load.unload_rate / units::nN_nm / part);
-    keys.emplace_back("twist.unloaded_ps", load.unloaded * part);
-  }
-  return keys;
-}
-
 // --- the load --------------------------------------------------------------------------------------------------
 
 TwistLoad TwistLoad::on_grip(std::vector<int> grip, double sign_there) const {

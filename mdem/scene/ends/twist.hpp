@@ -97,7 +97,6 @@ class TwistDrive : public Drive {
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::loaded; }
   std::string not_for_lammps() const override { return load.geometric_only ? "twist.geometric_only" : ""; }
-  std::optional<std::vector<std::pair<std::string, double>>> hastened(double part) const override;
 
  private:
   void refuse_in_relaxation(const TomlTable& top, const Scene&) const;

@@ -73,12 +73,6 @@ struct FailureLaw {
   }
 };
 
-struct BrokenBond {
-  int element = 0;  // before the break
-  double time = 0;  // ps
-  Vector3 place;
-};
-
 // --- the term -----------------------------------------------------------------------------------------
 
 class TubeFailure : public ForceTerm {
@@ -99,9 +93,9 @@ class TubeFailure : public ForceTerm {
 
   // Bonds that had broken before the start are where they are at the start.
   void prepare(const ListedScene& scene) override {
-    for (BrokenBond& b : all_) {
-      const auto i = static_cast<std::size_t>(b.element);
-      if (!placed_) b.place = 0.5 * (scene.state.position[i] + scene.state.position[i + 1]);
+    for (const int element : all_) {
+      const auto i = static_cast<std::size_t>(element);
+      if (!placed_) tell(element, 0, 0.5 * (scene.state.position[i] + scene.state.position[i + 1]));
     }
     placed_ = true;
   }
@@ -119,32 +113,27 @@ class TubeFailure : public ForceTerm {
 
   TermState memory() const override {
     TermState out;
-    for (const BrokenBond& b : all_) out.push_back({b.element, {b.time, b.place.x(), b.place.y(), b.place.z()}});
+    for (const int element : all_) out.push_back({element, {}});
     return out;
   }
   void set_memory(const TermState& memory) override {
     placed_ = true;
     all_.clear();
+    events_.clear();
     broken_.assign(limit_.size(), 0);
     for (const TermRecord& r : memory) {
-      const std::vector<double>& x = r.numbers;
-      if (x.size() != 4 || limit_[static_cast<std::size_t>(r.element)] == no_bond ||
-          !std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); }))
+      if (!r.numbers.empty() || limit_[static_cast<std::size_t>(r.element)] == no_bond)
         throw std::runtime_error("the memory of broken tubes is damaged");
-      all_.push_back({r.element, x[0], Vector3(x[1], x[2], x[3])});
+      all_.push_back(r.element);
       for (const int e : with_images(r.element)) broken_[static_cast<std::size_t>(e)] = 1;
     }
   }
   void begin_with(const TermState& memory) override {
     set_memory(memory);
-    for (BrokenBond& b : all_) b.time = 0;
     placed_ = false;
   }
-  std::vector<TermEvent> events() const override {
-    std::vector<TermEvent> out;
-    for (const BrokenBond& b : all_) out.push_back({b.time, "tube broke", b.element, b.element + 1, b.place});
-    return out;
-  }
+  std::vector<TermEvent> events() const override { return events_; }
+  void forget_events() override { events_.clear(); }
   std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
 
  private:
@@ -193,14 +182,15 @@ class TubeFailure : public ForceTerm {
     const std::vector<int> bonds = with_images(element);
     for (const int e : bonds) broken_[static_cast<std::size_t>(e)] = 1;
     // In the order of the elements, as a memory comes back.
-    const BrokenBond one{element, state.time, state.position[i] + 0.5 * d};
-    all_.insert(std::upper_bound(all_.begin(), all_.end(), one,
-                                 [](const BrokenBond& x, const BrokenBond& y) { return x.element < y.element; }),
-                one);
+    all_.insert(std::upper_bound(all_.begin(), all_.end(), element), element);
+    tell(element, state.time, state.position[i] + 0.5 * d);
     return static_cast<double>(bonds.size()) * bond_energy(type.bond, type.element_length, d,
                                                            frame_of(state.orientation[i]),
                                                            frame_of(state.orientation[i + 1]))
                                                    .total();
+  }
+  void tell(int element, double time, const Vector3& place) {
+    events_.push_back({time, "tube broke", element, element + 1, place});
   }
   // The bond behind this element, and its images in a slice.
   std::vector<int> with_images(int element) const {
@@ -214,7 +204,8 @@ class TubeFailure : public ForceTerm {
   Topology topology_;
   std::vector<double> limit_;  // of strain, of the bond behind each element
   std::vector<char> broken_;   // likewise
-  std::vector<BrokenBond> all_;
+  std::vector<int> all_;           // elements behind which a bond has broken, images left out
+  std::vector<TermEvent> events_;  // that nobody has written yet
   bool placed_ = true;
 };
 

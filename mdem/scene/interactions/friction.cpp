@@ -189,7 +189,7 @@ const KeyTable<FrictionDrive>& friction_table() {
            "\"dry\": beyond its strength a contact slides and loses the work; \"corrugation\": its force is "
            "periodic and loses nothing"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
-                   "the two tube types between which it acts, from 0; this pair is then this table's alone",
+                   "the two tube types between which it acts, from 0; no other table then acts between these two",
                    read_types)},
       check};
   return table;

@@ -183,8 +183,8 @@ const KeyTable<LinksDrive>& links_table() {
            "time at which the links of per_nm and at_ends are placed, as a rope is cured once it is spun")
            .of_pace(SceneKey::Pace::time),
        Key::custom("between", "", otherwise("[0, 5, 1, 5]", "none"),
-                   "links by name: tube, element, other tube, its element, and so on; numbers from 0, negative "
-                   "elements from the end",
+                   "links that are there from the start, four numbers for each: tube, element, other tube, its "
+                   "element; from 0, negative elements from the end",
                    read_links_between),
        Key::number(
            "stiffness_nN_per_nm", spring, Bounds::positive(1e5), [](auto& d) -> auto& { return d.law.stretch; },
@@ -214,7 +214,7 @@ const KeyTable<LinksDrive>& links_table() {
            otherwise("1", "required by forming_per_nm_ps"),
            "largest number of links of this table per length of tube; beyond it no more form"),
        Key::custom("types", "", otherwise("[0, 1]", "all tubes"),
-                   "the two tube types that they join, from 0; this pair is then this table's alone",
+                   "the two tube types that they join, from 0; no other table then acts between these two",
                    read_linked_types),
        Key::integer(
            "seed", 0, 1000000000, [](auto& d) -> auto& { return d.law.seed; }, otherwise("1", "start.seed"),

@@ -15,12 +15,14 @@ const std::array<Text, limit_count>& texts() {
       {standard("19.9"), "twist of one bond: its energy is then 1 % off the rod's; at 90 it slips"},
       {otherwise("0.086", "the set's"), "curvature of a tube"},
       {otherwise("0.043", "the set's, for tubes of this length"), "radius of a tube times its twist per length"},
-      {otherwise("0.069", "tension: the end of the set's pull, else its stretch; compression: its stretch"),
+      {otherwise("0.069",
+                 "in tension the last strain of [bond.pull] of the set, else validity.stretch; in compression "
+                 "validity.stretch"),
        "strain of a bond, in tension or compression"},
       {otherwise("0.11", "down to the core gap of the law"), "how much nearer than at rest tubes are pressed"},
       {otherwise("2", "a tenth of the speed of sound along the tube"), "speed of an element"},
       {otherwise("2.3", "where a tube of this diameter collapses"), "pressure of the contacts on a tube"},
-      {standard("0.05"), "error of the energy balance over the energy that has moved"},
+      {standard("0.05"), "error of the energy balance over the energy that was converted"},
       {standard("0.25"), "kinetic energy of a cold rope over its energy of twist under the whole moment"},
   }};
   return all;
@@ -46,7 +48,7 @@ std::vector<KeyOf<LimitOptions>> keys() {
 
 const KeyTable<LimitOptions>& limits_table() {
   static const KeyTable<LimitOptions> table = {
-      "limits", "the run says so at once where it passes one of these; 0: not watched", keys(), {}};
+      "limits", "limits of the model: the run says at once when it passes one of them; 0: not watched", keys(), {}};
   return table;
 }
 

@@ -47,24 +47,24 @@ const KeyTable<RunOptions>& run_table() {
       {Key::custom("mode", "", standard("\"dynamics\""),
                    "\"dynamics\", or \"relax\": to a state of rest, under the loads as they are in the end",
                    read_mode),
-       Key::word(
-           "solver",
-           Words<R::Solver>{
-               {"fire", R::Solver::fire}, {"newton", R::Solver::newton}, {"auto", R::Solver::automatic}},
-           &R::solver, standard(),
-           "relax: \"fire\", down the forces; \"newton\", by the stiffness of the whole, for ropes near rest and "
-           "under couples; \"auto\": FIRE while contacts form, then Newton"),
-       Key::custom("time_step_fs", "fs", standard("\"auto\""),
-                   "\"auto\": 0.9 of the stability limit; 0.6 from a state file, where heat may_cool, or to relax; "
-                   "where warm, positions are at most 2 % hotter than velocities",
-                   read_time_step),
+       Key::word("solver",
+                 Words<R::Solver>{
+                     {"fire", R::Solver::fire}, {"newton", R::Solver::newton}, {"auto", R::Solver::automatic}},
+                 &R::solver, standard(),
+                 "relax: \"fire\" follows the forces; \"newton\" uses the tangent stiffness, for ropes near "
+                 "equilibrium and under couples; \"auto\": FIRE while contacts form, then Newton"),
+       Key::custom(
+           "time_step_fs", "fs", standard("\"auto\""),
+           "\"auto\": 0.9 of the stability limit; 0.6 for a scene that begins with a state file, has may_cool or "
+           "relaxes; so short in a warm scene that positions are at most 2 % hotter than velocities",
+           read_time_step),
        Key::word(
            "integrator", Words<bool>{{"verlet", false}, {"rk4", true}},
            [](auto& r) -> auto& { return r.stepping.runge_kutta; }, standard(),
            "\"rk4\": rotations by 4th-order Runge-Kutta, as in PFC3D, for comparison"),
        Key::number("mass_scale", unit::none, Bounds::range(1e-3, 1e6), &R::mass_scale, standard(),
-                   "masses times this: steps grow and waves slow down by its root, kinetic energies at a given "
-                   "speed grow by it and at a given temperature stay; statics stay"),
+                   "multiplies all masses: time steps grow by its square root, waves slow down by it, and "
+                   "equilibrium states stay the same"),
        Key::number("duration_ps", unit::ps, time, &R::duration,
                    otherwise("100", "until [twist] and all grips have done what they do"),
                    "dynamics: simulated time")
@@ -88,8 +88,8 @@ const KeyTable<RunOptions>& run_table() {
        Key::number(
            "energy_tolerance", unit::none, Bounds::range(1e-9, 1), [](auto& r) -> auto& { return r.goal.energy; },
            standard(),
-           "relax: done when, in addition, the energy of the bonds is estimated to be within this part of that at "
-           "the minimum"),
+           "relax: done when, in addition, the energy of the bonds is estimated to be within this fraction of its "
+           "value at the minimum"),
        Key::integer("max_steps", 1, 1000000000, &R::max_steps, standard(), "relax: give up after so many steps")},
       check_run_keys};
   return table;

@@ -52,7 +52,7 @@ void read_tube_types(const TomlTable& top, const Scene&, Scene& out) {
   } else if (sets > 1 && !top.has("type_shares")) {
     throw top.error(
         "tube_types", "is missing",
-        "say for each tube which of the sets it is: tube_types = [0, 1, ...]; or the part of each: type_shares "
+        "say the number of the set of each tube: tube_types = [0, 1, ...]; or the part of each: type_shares "
         "= [0.7, 0.3]");
   }
 }
@@ -88,7 +88,8 @@ KeyTable<Scene> top_table(const std::vector<std::string>& copies) {
                          out.sets = read_sets(top, scene, copies);
                        }),
            Key::custom("tube_types", "", otherwise("[0, 1, 1]", "all of the first"),
-                       "which of the sets each tube is, from 0; in a rope of finite tubes also: each strand",
+                       "number of the parameter set of each tube, from 0; in a rope of finite tubes one for each "
+                       "strand will do",
                        read_tube_types),
            Key::custom("type_shares", "", otherwise("[0.7, 0.3]", "tube_types"),
                        "or the part of the tubes that are of each set: drawn at random with start.seed",

@@ -2,7 +2,6 @@
 
 #include <Spectra/GenEigsRealShiftSolver.h>
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -20,53 +19,15 @@ using Matrix = Tangent::Matrix;
 
 constexpr double least_neutral = 1e-4;  // 1/ps
 
-// The free unknowns, in the order of the elements along the longest extent: matrices of ropes are then bands.
-class FreeUnknowns {
- public:
-  FreeUnknowns(const std::vector<char>& free, const std::vector<int>& order) : all_(6 * order.size()) {
-    ROPEWALK_EXPECTS(free.size() == all_);
-    for (const int e : order)
-      for (int k = 6 * e; k < 6 * e + 6; ++k)
-        if (free[static_cast<std::size_t>(k)]) at_.push_back(k);
-  }
-  Eigen::Index size() const { return static_cast<Eigen::Index>(at_.size()); }
-  VectorXd chosen(const VectorXd& all) const {
-    VectorXd out(size());
-    for (std::size_t k = 0; k < at_.size(); ++k) out[static_cast<Eigen::Index>(k)] = all[at_[k]];
-    return out;
-  }
-  template <class Vector>
-  Vector spread(const Vector& some) const {
-    Vector out = Vector::Zero(static_cast<Eigen::Index>(all_));
-    for (std::size_t k = 0; k < at_.size(); ++k) out[at_[k]] = some[static_cast<Eigen::Index>(k)];
-    return out;
-  }
-  Matrix chosen(const Matrix& all) const {
-    std::vector<int> place(all_, -1);
-    for (std::size_t k = 0; k < at_.size(); ++k) place[static_cast<std::size_t>(at_[k])] = static_cast<int>(k);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int column = 0; column < all.outerSize(); ++column)
-      for (Matrix::InnerIterator entry(all, column); entry; ++entry) {
-        const int i = place[static_cast<std::size_t>(entry.row())], j = place[static_cast<std::size_t>(column)];
-        if (i >= 0 && j >= 0) entries.emplace_back(i, j, entry.value());
-      }
-    Matrix out(size(), size());
-    out.setFromTriplets(entries.begin(), entries.end());
-    return out;
-  }
-
- private:
-  std::size_t all_;
-  std::vector<int> at_;
-};
-
-// (s^2 M + s C + K) u = 0 of the free unknowns.
+// (s^2 M + s C + K) q = 0 of the coordinates.
 struct Quadratic {
   VectorXd mass;
   Matrix damping, stiffness;
 
-  Quadratic(const Tangent& t, const FreeUnknowns& f)
-      : mass(f.chosen(t.mass)), damping(f.chosen(t.damping)), stiffness(f.chosen(t.stiffness)) {}
+  Quadratic(const Tangent& t, const Reduction& r)
+      : mass(r.mass), damping(r.forces * t.damping * r.motions), stiffness(r.forces * t.stiffness * r.motions) {
+    if (r.stiffness.size() > 0) stiffness += r.stiffness;
+  }
 
   Eigen::Index size() const { return mass.size(); }
   Matrix at(double s) const {
@@ -87,26 +48,22 @@ struct Quadratic {
   }
 };
 
-class Decomposition {
- public:
-  explicit Decomposition(const Matrix& matrix) {
-    lu_.compute(matrix);
-    if (lu_.info() != Eigen::Success)
-      throw std::runtime_error("the matrix cannot be decomposed: " + lu_.lastErrorMessage());
-  }
-  VectorXd solve(const VectorXd& b) const { return lu_.solve(b); }
-  std::size_t nonzeros() const { return static_cast<std::size_t>(lu_.nnzL() + lu_.nnzU()); }
-
- private:
-  Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<int>> lu_;
-};
-
-// What Spectra asks for: (A - shift)^-1 of the displacements and the velocities.
+// What Spectra asks for: (A - shift)^-1 of the displacements and the velocities. Displacements along neutral
+// motions, and velocities along those that meet no damping either, span a space that A does not leave: what is left
+// of the others without their parts in it has all other eigenvalues.
 class Inverse {
  public:
   using Scalar = double;
 
-  Inverse(const Quadratic& q, double shift) : q_(q), shift_(shift), lu_(q.at(shift)) {}
+  Inverse(const Quadratic& q, const Reduction& r, const ModeSearch& search)
+      : q_(q), shift_(search.shift), lu_(q.at(search.shift)) {
+    if (!search.without_neutral) return;
+    const double fastest = q.damping.nonZeros() > 0 ? 1e-6 * q.damping.norm() / q.mass.minCoeff() : 0;
+    for (const VectorXd& motion : r.neutral) {
+      places_.push_back(motion);
+      if (std::sqrt(q.kinetic_norm(VectorXd(q.damping * motion), -1)) <= fastest) speeds_.push_back(motion);
+    }
+  }
   Eigen::Index rows() const { return 2 * q_.size(); }
   Eigen::Index cols() const { return rows(); }
   void set_shift(double) {}
@@ -117,13 +74,15 @@ class Inverse {
     const VectorXd inertial = q_.mass.cwiseProduct(b + shift_ * a);
     u = -lu_.solve(inertial + q_.damping * a);
     v = a + shift_ * u;
+    for (const VectorXd& motion : places_) u -= motion.dot(q_.mass.cwiseProduct(u)) * motion;
+    for (const VectorXd& motion : speeds_) v -= motion.dot(q_.mass.cwiseProduct(v)) * motion;
   }
-  std::size_t nonzeros() const { return lu_.nonzeros(); }
 
  private:
   const Quadratic& q_;
+  std::vector<VectorXd> places_, speeds_;  // that are left out
   double shift_;
-  Decomposition lu_;
+  SlabLu lu_;
 };
 
 // Of unit kinetic energy, and turned so that as much as possible of it is real.
@@ -134,36 +93,35 @@ VectorXcd normal(const Quadratic& q, VectorXcd u) {
 }
 
 // Moves of the whole along the axes change no force.
-double resolution_of(const Quadratic& q, const FreeUnknowns& f, Eigen::Index all) {
+double resolution_of(const Quadratic& q, const Tangent& t, const Reduction& r) {
   double worst = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    VectorXd shift = VectorXd::Zero(all);
-    for (Eigen::Index row = axis; row < all; row += 6) shift[row] = 1;
-    const VectorXd u = f.chosen(shift);
-    worst = std::max(worst, std::sqrt(q.kinetic_norm(q.stiffness * u, -1) / q.kinetic_norm(u, 1)));
+    VectorXd shift = VectorXd::Zero(t.mass.size());
+    for (Eigen::Index row = axis; row < shift.size(); row += 6) shift[row] = 1;
+    const VectorXd left = r.forces * VectorXd(t.stiffness * shift);
+    worst = std::max(worst, std::sqrt(q.kinetic_norm(left, -1) / shift.dot(t.mass.cwiseProduct(shift))));
   }
   return std::sqrt(worst);
 }
 
 }  // namespace
 
-Modes modes_of(const Tangent& tangent, const std::vector<char>& free, const ModeSearch& search) {
+Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSearch& search) {
   ROPEWALK_EXPECTS(search.count > 0 && search.shift > 0);
-  const FreeUnknowns unknowns(free, tangent.order);
-  const Quadratic q(tangent, unknowns);
+  const Quadratic q(tangent, reduction);
   const Eigen::Index most = 2 * q.size() - 2;
   const Eigen::Index wanted = std::min<Eigen::Index>(search.count, most);
   if (wanted < 1) throw std::runtime_error("nothing is free to move");
-  Inverse inverse(q, search.shift);
-  Spectra::GenEigsRealShiftSolver<Inverse> solver(inverse, wanted, std::min(most + 2, 2 * wanted + 40),
-                                                  search.shift);
+  Inverse inverse(q, reduction, search);
+  Spectra::GenEigsRealShiftSolver<Inverse> solver(
+      inverse, wanted, std::min(most + 2, 2 * wanted + search.more_vectors), search.shift);
   solver.init();
-  const Eigen::Index found =
-      solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-11, Spectra::SortRule::LargestReal);
+  const Eigen::Index found = solver.compute(Spectra::SortRule::LargestMagn, search.restarts, search.tolerance,
+                                            Spectra::SortRule::LargestReal);
   Modes out;
   out.shift = search.shift;
-  out.nonzeros = inverse.nonzeros();
-  out.resolution = resolution_of(q, unknowns, tangent.mass.size());
+  out.resolution = resolution_of(q, tangent, reduction);
+  if (found < 1 && search.may_find_none) return out;
   if (found < 1) throw std::runtime_error("Arnoldi's method finds no eigenvalue");
   const VectorXcd rates = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();
@@ -172,44 +130,60 @@ Modes modes_of(const Tangent& tangent, const std::vector<char>& free, const Mode
     out.reach = std::max(out.reach, std::abs(s - search.shift));
     if (s.imag() < 0) continue;
     const VectorXcd u = normal(q, vectors.col(k).head(q.size()));
-    const double left = std::sqrt(q.kinetic_norm(q.times(s, u), -1)),
-                 slope = std::sqrt(q.kinetic_norm(q.slope_times(s, u), -1));
-    out.modes.push_back({s, unknowns.spread(u), left / slope});
+    Mode mode{s, reduction.motions * u, 0};
+    if (!search.without_neutral) {
+      const double left = std::sqrt(q.kinetic_norm(q.times(s, u), -1)),
+                   slope = std::sqrt(q.kinetic_norm(q.slope_times(s, u), -1));
+      mode.residual = left / slope;
+    }
+    out.modes.push_back(std::move(mode));
   }
   std::stable_sort(out.modes.begin(), out.modes.end(),
                    [](const Mode& a, const Mode& b) { return a.rate.real() > b.rate.real(); });
   return out;
 }
 
-double largest_free_force(const Topology& topology, const VectorXd& force, const std::vector<char>& free) {
-  double largest = 0;
-  for (int e = 0; e < topology.elements(); ++e) {
-    Eigen::Matrix<double, 6, 1> f = force.segment<6>(6 * static_cast<Eigen::Index>(e));
-    for (int k = 0; k < 6; ++k)
-      if (!free[static_cast<std::size_t>(6 * e + k)]) f[k] = 0;
-    largest = std::max({largest, f.head<3>().norm(), f.tail<3>().norm() / topology.type_of_element(e).radius});
-  }
-  return largest;
-}
-
 double neutral_below(const Modes& found) { return std::max(least_neutral, 3 * found.resolution); }
 
-// A band as wide as the elements that reach one another lie apart in the order of the decomposition; three times as
-// many numbers as in the half of it, since rows are exchanged.
-double bytes_of_decomposition(const Simulation& simulation) {
-  const std::vector<int> order = order_along(simulation.state());
-  std::vector<int> place(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
-  double sum = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    int farthest = 1;
-    if (simulation.list().cutoff > 0)
-      simulation.list().for_neighbours(static_cast<int>(i), [&](int j) {
-        farthest = std::max(farthest, std::abs(place[static_cast<std::size_t>(j)] - place[i]));
+// A slice is closed to a ring: folded in its middle, it is a band twice as wide.
+std::vector<int> elimination_order(const Topology& topology, const State& state) {
+  std::vector<int> order = order_along(state);
+  if (topology.groups.images == 0) return order;
+  order.erase(std::remove_if(order.begin(), order.end(), [&](int e) { return topology.is_image(e); }), order.end());
+  const auto z = [&](int e) { return state.position.z[static_cast<std::size_t>(e)]; };
+  double middle = 0;
+  for (const int e : order) middle += z(e) / static_cast<double>(order.size());
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return std::fabs(z(a) - middle) < std::fabs(z(b) - middle); });
+  return order;
+}
+
+SlabCost cost_of_decomposition(const Simulation& s) {
+  const Topology& topology = s.topology();
+  const std::vector<int> order = elimination_order(topology, s.state());
+  std::vector<Eigen::Index> place(s.state().size(), -1), farthest(6 * order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    place[static_cast<std::size_t>(order[k])] = static_cast<Eigen::Index>(k);
+  for (std::size_t k = 0; k < farthest.size(); ++k) farthest[k] = static_cast<Eigen::Index>(k);
+  const auto join = [&](int i, int j) {
+    const Eigen::Index a = place[static_cast<std::size_t>(topology.original_of(i))],
+                       b = place[static_cast<std::size_t>(topology.original_of(j))];
+    for (Eigen::Index c = 0; c < 6; ++c) {
+      Eigen::Index& far = farthest[static_cast<std::size_t>(6 * std::min(a, b) + c)];
+      far = std::max(far, 6 * std::max(a, b) + 5);
+    }
+  };
+  const double reach2 = s.interaction().cutoff() * s.interaction().cutoff();
+  for (int t = 0; t < topology.tubes(); ++t)
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
+      if (i + 1 < topology.tube_begin[t + 1]) join(i, i + 1);
+      if (!(s.list().cutoff > 0)) continue;
+      const Vector3 x = s.state().position[static_cast<std::size_t>(i)];
+      s.list().for_neighbours(i, [&](int j) {
+        if ((s.state().position[static_cast<std::size_t>(j)] - x).squaredNorm() < reach2) join(i, j);
       });
-    sum += farthest;
-  }
-  return 3 * 36 * sum * (sizeof(double) + sizeof(int));
+    }
+  return slab_cost(slab_ends(farthest));
 }
 
 }  // namespace ropewalk

@@ -8,18 +8,27 @@
 //
 //   (A - shift)^-1 (a, b) = (u, a + shift u),   (shift^2 M + shift C + K) u = -(M b + C a + shift M a)
 //
-// so that one sparse LU decomposition of the size of K does.
+// so that one LU decomposition of the size of K does (slab_lu.hpp).
 //
 // Units nm, ps, eV.
 #pragma once
 
 #include <complex>
-#include <optional>
 #include <vector>
 
+#include "sim/dynamics/slab_lu.hpp"
 #include "sim/dynamics/tangent.hpp"
 
 namespace ropewalk {
+
+// The motions that constraints allow, as coordinates q: u = motions q, in an order along the rope.
+struct Reduction {
+  Tangent::Matrix motions;               // column by column
+  Tangent::Matrix forces;                // row by row: the force on a coordinate, from those on all elements
+  Eigen::VectorXd mass;                  // of each coordinate
+  Tangent::Matrix stiffness;             // of what the constraints bear
+  std::vector<Eigen::VectorXd> neutral;  // coordinates of motions that meet no stiffness, orthonormal by the masses
+};
 
 struct Mode {
   std::complex<double> rate;  // s, 1/ps; of a pair of conjugates the one with the positive imaginary part
@@ -31,6 +40,13 @@ struct Mode {
 struct ModeSearch {
   int count = 12;
   double shift = 0.05;  // 1/ps
+  // Motions that meet no stiffness (Reduction::neutral) are left out of the search, and of the shapes.
+  bool without_neutral = false;
+  // Vectors of Arnoldi's method beyond twice the count, and how often it begins again. With few of them it finds
+  // what stands alone, and no error if there is nothing.
+  int more_vectors = 40, restarts = 300;
+  bool may_find_none = false;
+  double tolerance = 1e-11;  // of 1/(rate - shift)
 };
 
 struct Modes {
@@ -41,20 +57,18 @@ struct Modes {
   // 1/ps: rates below cannot be told from zero. The stiffness against a shift of the whole is not quite zero, but
   // this number squared times its mass.
   double resolution = 0;
-  std::size_t nonzeros = 0;  // of the decomposition
 };
 
 // 1/ps: the real and imaginary parts of motions that change nothing, such as moves of the whole, are below this.
 double neutral_below(const Modes& found);
 
-// `free`: of each unknown (free_unknowns). Throws std::runtime_error where the decomposition fails, or too few of
-// the eigenvalues converge.
-Modes modes_of(const Tangent& tangent, const std::vector<char>& free, const ModeSearch& search);
+// Throws std::runtime_error where the decomposition fails, or too few of the eigenvalues converge.
+Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSearch& search);
 
-// Bytes of the decomposition, by the elements within reach of one another; for a warning before it is tried.
-double bytes_of_decomposition(const Simulation& simulation);
+// The elements in the order of the decomposition; those of a slice without its images.
+std::vector<int> elimination_order(const Topology& topology, const State& state);
 
-// eV/nm: the largest force on a free unknown, torques over the radius.
-double largest_free_force(const Topology& topology, const Eigen::VectorXd& force, const std::vector<char>& free);
+// Of the decomposition, by the elements within reach of one another; before it is tried.
+SlabCost cost_of_decomposition(const Simulation& simulation);
 
 }  // namespace ropewalk

@@ -145,7 +145,9 @@ class Simulation {
   }
   const std::vector<char>* broken_bonds() const { return engine_.terms().broken_bonds(); }
   std::vector<NamedMemory> term_memories() const { return engine_.terms().memories(); }
+  // What has happened since the start or since forget_events(), in the order of time. A checkpoint has none of them.
   std::vector<TermEvent> term_events() const { return engine_.terms().events(); }
+  void forget_events() { engine_.forget_events(); }
   // The memories of all force terms, ForceTerms::memory(), and a simulation that goes on with such ones: its forces
   // and energies are those of the present state.
   std::vector<double> memory() const { return engine_.terms().memory(); }

@@ -93,8 +93,8 @@ class Differences {
     rest_.angular_velocity.set_to_zero();
   }
 
-  // `known`: K, where it is known otherwise.
-  Tangent tangent(const Tangent::Matrix* known = nullptr) {
+  // `known`: K, and `damped`: C, where they are known otherwise.
+  Tangent tangent(const Tangent::Matrix* known = nullptr, const Tangent::Matrix* damped = nullptr) {
     const Topology& topology = s_.topology();
     const Eigen::Index n = row_of(topology.elements());
     Tangent out;
@@ -106,9 +106,14 @@ class Differences {
       }
     out.force = model_forces(rest_) + load_forces(rest_);
     out.order = order_along(rest_);
-    const Graph graph = who_acts_on_whom(topology, s_.list(), s_.list().cutoff > 0);
+    Graph graph;
+    std::vector<std::vector<int>> groups;
+    if (!known || !damped) {
+      graph = who_acts_on_whom(topology, s_.list(), s_.list().cutoff > 0);
+      groups = groups_of(graph);
+    }
     Triplets stiffness, damping;
-    for (const std::vector<int>& group : groups_of(graph))
+    for (const std::vector<int>& group : groups)
       for (int unknown = 0; unknown < 6; ++unknown) {
         const auto add = [&](const VectorXd& change, Triplets& to) {
           for (const int i : group)
@@ -119,14 +124,15 @@ class Differences {
         };
         const auto model = [this](const State& s) { return model_forces(s); };
         if (!known) add(difference(group, unknown, false, model), stiffness);
-        add(difference(group, unknown, true, model), damping);
+        if (!damped) add(difference(group, unknown, true, model), damping);
       }
-    add_loads(stiffness, damping);
+    if (!known || !damped) add_loads(stiffness, damping);
     out.stiffness.resize(n, n);
     out.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
     if (known) out.stiffness = *known;
     out.damping.resize(n, n);
     out.damping.setFromTriplets(damping.begin(), damping.end());
+    if (damped) out.damping = *damped;
     out.error = std::max(error_along(out.stiffness, false), error_along(out.damping, true));
     out.evaluations = evaluations_;
     return out;
@@ -240,33 +246,10 @@ Tangent tangent_of(const Simulation& simulation, double step) {
   return Differences(simulation, step).tangent();
 }
 
-Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness) {
+Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness,
+                     const Tangent::Matrix* damping) {
   constexpr double step = 1e-5;  // nm, of the motion along which the error is found
-  return Differences(simulation, step).tangent(&stiffness);
-}
-
-std::optional<std::vector<char>> free_unknowns(const Simulation& simulation) {
-  const std::size_t n = simulation.state().size();
-  std::vector<char> free(6 * n, 1);
-  if (simulation.loads().empty()) return free;
-  State given = simulation.state();
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto number = [&](std::uint32_t k) {
-      return unit_interval(philox({static_cast<std::uint32_t>(i), k, 0, 0}, 2)[0]);
-    };
-    given.velocity.set(i, {number(0), number(1), number(2)});
-    given.angular_velocity.set(i, {number(3), number(4), number(5)});
-  }
-  State left = given;
-  constrain(simulation.topology(), simulation.loads(), before_all_motion, 0.0, left);
-  for (std::size_t i = 0; i < n; ++i)
-    for (int k = 0; k < 6; ++k) {
-      const double before = (k < 3 ? given.velocity : given.angular_velocity)[i][k % 3];
-      const double after = (k < 3 ? left.velocity : left.angular_velocity)[i][k % 3];
-      if (after != before && after != 0) return {};
-      free[6 * i + static_cast<std::size_t>(k)] = after == before;
-    }
-  return free;
+  return Differences(simulation, step).tangent(&stiffness, damping);
 }
 
 }  // namespace ropewalk

@@ -36,17 +36,14 @@ struct Tangent {
 // turns are as large at the radius of the tube.
 Tangent tangent_of(const Simulation& simulation, double step = 1e-5);
 
-// The same with a K that is known, so that only C is found by differences.
-Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness);
+// The same with a K that is known, so that only C is found by differences, and that neither where it is known.
+Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness,
+                     const Tangent::Matrix* damping = nullptr);
 
 // The state with each element moved by u, and turned; with the velocities of u' (null: at rest).
 State moved(const State& state, const Eigen::VectorXd& u, const Eigen::VectorXd* velocity = nullptr);
 
 // The elements along the longest extent of a state.
 std::vector<int> order_along(const State& state);
-
-// For each unknown whether the constraints leave it free, at rest as they are. None where a constraint ties several
-// unknowns together.
-std::optional<std::vector<char>> free_unknowns(const Simulation& simulation);
 
 }  // namespace ropewalk

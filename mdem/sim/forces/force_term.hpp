@@ -16,7 +16,7 @@
 // a function uses nothing but its arguments, the memory, and the results of prepare and gather.
 //
 // The memory holds whatever the future depends on besides the state: broken tethers, the strain of contacts. Only
-// prepare and advance change it. It is handed out as records of numbers that belong to elements of the scene, so
+// prepare and advance change it. What is over, as a link that broke, is an event, and no part of it. It is handed out as records of numbers that belong to elements of the scene, so
 // that a checkpoint can hold it and elements can take it along to another process.
 //
 // Friction of tubes side by side (terms/dry_friction.cpp) and links that form and break (terms/links.cpp) are such
@@ -165,9 +165,10 @@ class ForceTerm {
 
   // What acts from the start on, for the account.
   virtual long begun_at_start() const { return 0; }
-  // Its history, for the run's file events.csv. It follows from the memory, so that a run that goes on from a
-  // checkpoint knows all of it.
+  // What has happened since the start, or since forget_events(), for the run's file events.csv. set_memory() drops
+  // them: who keeps a memory writes the events first.
   virtual std::vector<TermEvent> events() const { return {}; }
+  virtual void forget_events() {}
 
   // For the oracle (compute_reference): a plain form, over all pairs and in one thread, which adds to forces,
   // energies and power. Without one, false: add and add_pairs are called with a list of all pairs, whole tubes and

@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr int the_account = -1;  // in the place of an element
+constexpr int the_account = -1;  // stands for the account in place of an element
 
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;
@@ -188,6 +188,10 @@ std::vector<TermEvent> ForceTerms::events() const {
   }
   std::stable_sort(all.begin(), all.end(), [](const TermEvent& x, const TermEvent& y) { return x.time < y.time; });
   return all;
+}
+
+void ForceTerms::forget_events() {
+  for (Working& w : terms_) w.term->forget_events();
 }
 
 std::vector<double> ForceTerms::memory() const {

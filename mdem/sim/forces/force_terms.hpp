@@ -53,8 +53,9 @@ class ForceTerms : private PairWork {
   std::vector<TermAccount> accounts() const;
   // ForceTerm::broken_bonds of the one that has some; null: none has.
   const std::vector<char>* broken_bonds() const;
-  // Of all terms, in the order of time.
+  // Of all terms, in the order of time: those since the start or since forget_events().
   std::vector<TermEvent> events() const;
+  void forget_events();
 
   std::vector<double> memory() const;
   // The memories of the interaction's own terms, in their order.

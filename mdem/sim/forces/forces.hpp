@@ -104,6 +104,7 @@ class ForceEngine {
   const ContactEngine* contact() const { return contact_.get(); }
   // The terms of the last interaction, with their memories.
   const ForceTerms& terms() const { return terms_; }
+  void forget_events() { terms_.forget_events(); }
   // Goes on with the memories of another engine, for the same list.
   void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
   // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.

@@ -44,11 +44,35 @@ AllowedMotions::AllowedMotions(const Simulation& s)
     }
   axis_.resize(n);
   for (std::size_t i = 0; i < n; ++i) axis_[i] = axis_of(state_.orientation[i]);
+  find_images();
   find_constraints();
   VectorXd internal(mass_.size());
   for (std::size_t i = 0; i < n; ++i)
     internal.segment<6>(6 * static_cast<Eigen::Index>(i)) << s.forces().force[i], s.forces().torque[i];
   find_neutral(internal - load_forces(loads_, state_));
+}
+
+void AllowedMotions::find_images() {
+  if (topology_.groups.images == 0) return;
+  double mass = 0;
+  for (int e = 0; e < topology_.elements(); ++e) {
+    const int o = topology_.original_of(e);
+    if (o == e) continue;
+    const auto i = static_cast<std::size_t>(e), from = static_cast<std::size_t>(o);
+    const Quaternion turn = state_.orientation[i] * state_.orientation[from].conjugate();
+    Image image{6 * static_cast<Eigen::Index>(e), 6 * static_cast<Eigen::Index>(o), e > o ? 1.0 : -1.0, 0,
+                turn.normalized().toRotationMatrix()};
+    image.part = mass_[image.row];
+    mass += image.part;
+    mass_.segment<6>(image.row).setZero();
+    images_.push_back(image);
+  }
+  for (Image& image : images_) image.part /= mass;
+  VectorXd u = VectorXd::Zero(mass_.size());
+  for (const Image& image : images_) u[image.row + 2] = image.sign;
+  set_velocities(u, scratch_);
+  constrain(topology_, loads_, before_all_motion, 0.0, scratch_);
+  free_period_ = (velocities_of(scratch_) - u).cwiseAbs().maxCoeff() < 1e-9;
 }
 
 void AllowedMotions::constrain_motion(const State& at, VectorXd& u) const {
@@ -61,13 +85,89 @@ void AllowedMotions::constrain_motion(const State& at, VectorXd& u) const {
 
 void AllowedMotions::constrain_force(const State& at, VectorXd& f) const {
   if (!constrained_) return;
+  if (!images_.empty()) {
+    double on_period = 0;
+    for (const Image& image : images_) on_period += 0.5 * image.sign * f[image.row + 2];
+    for (Eigen::Index k = 0; k < f.size(); ++k)
+      if (held_[static_cast<std::size_t>(k)]) f[k] = 0;
+    if (free_period_) put_on_period(on_period, f);
+    return;
+  }
   f.array() /= mass_.array();
   constrain_motion(at, f);
   f.array() *= mass_.array();
 }
 
+double AllowedMotions::growth_of(const VectorXd& u) const {
+  double sum = 0;
+  for (const Image& image : images_) sum += image.part * image.sign * (u[image.row + 2] - u[image.original + 2]);
+  return sum;
+}
+
+void AllowedMotions::put_on_period(double force, VectorXd& f) const {
+  for (const Image& image : images_) {
+    f[image.row + 2] += image.sign * image.part * force;
+    f[image.original + 2] -= image.sign * image.part * force;
+  }
+}
+
+double AllowedMotions::force_on_period(const VectorXd& f) const {
+  if (!free_period_) return 0;
+  double sum = 0;
+  for (const Image& image : images_) sum += image.sign * f[image.row + 2];
+  return sum;
+}
+
+VectorXd AllowedMotions::without_period(const VectorXd& f) const {
+  VectorXd out = f;
+  if (free_period_) put_on_period(-force_on_period(f), out);
+  return out;
+}
+
+VectorXd AllowedMotions::stretch() const {
+  if (!free_period_) return {};
+  double length = 0;
+  for (const Image& image : images_)
+    length += image.part * image.sign *
+              (state_.position.z[static_cast<std::size_t>(image.row / 6)] -
+               state_.position.z[static_cast<std::size_t>(image.original / 6)]);
+  VectorXd u = VectorXd::Zero(mass_.size());
+  for (std::size_t i = 0; i < state_.size(); ++i)
+    u[6 * static_cast<Eigen::Index>(i) + 2] = state_.position.z[i] / length;
+  constrain_motion(state_, u);
+  return u;
+}
+
+void AllowedMotions::let_period_stay(VectorXd& u) const {
+  for (const Image& image : images_) u[image.row + 2] = u[image.original + 2];
+}
+
+void AllowedMotions::add_inertia(double by, const VectorXd& x, VectorXd& y) const {
+  y.noalias() += by * mass_.cwiseProduct(x);
+  if (free_period_) put_on_period(by * topology_.groups.period_inertia * growth_of(x), y);
+}
+
+std::vector<VectorXd> AllowedMotions::spins() const {
+  std::vector<VectorXd> out;
+  for (int t = 0; t < topology_.tubes(); ++t) {
+    if (!spins_[static_cast<std::size_t>(t)]) continue;
+    VectorXd u = VectorXd::Zero(mass_.size());
+    for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e)
+      u.segment<3>(6 * static_cast<Eigen::Index>(e) + 3) = axis_[static_cast<std::size_t>(e)];
+    out.push_back(std::move(u));
+  }
+  return out;
+}
+
+std::vector<VectorXd> AllowedMotions::wholes() const {
+  std::vector<VectorXd> out;
+  for (const Whole& w : whole_) out.push_back(w.motion);
+  return out;
+}
+
 void AllowedMotions::find_constraints() {
   held_.assign(static_cast<std::size_t>(mass_.size()), 0);
+  tied_.assign(static_cast<std::size_t>(mass_.size()), 0);
   if (loads_.empty()) return;
   VectorXd u(mass_.size());
   for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = random_part(k, 0);
@@ -75,12 +175,22 @@ void AllowedMotions::find_constraints() {
   VectorXd left = u;
   constrain_motion(state_, left);
   constrained_ = (left - u).cwiseAbs().maxCoeff() > 0;
+  for (const Image& image : images_)
+    for (Eigen::Index k = image.row; k < image.row + 6; ++k) {
+      held_[static_cast<std::size_t>(k)] = true;
+      left[k] = u[k];
+    }
   for (Eigen::Index k = 0; k < u.size(); ++k) {
     const bool held = left[k] == 0 && u[k] != 0;
-    held_[static_cast<std::size_t>(k)] = held;
-    turns_ = turns_ || (!held && left[k] != u[k]);
+    if (held) held_[static_cast<std::size_t>(k)] = true;
+    tied_[static_cast<std::size_t>(k)] = !held && left[k] != u[k];
+    turns_ = turns_ || tied_[static_cast<std::size_t>(k)];
   }
   if (!turns_) return;
+  if (!images_.empty()) {
+    keeps_momentum_ = false;
+    return;
+  }
   VectorXd v(u.size()), v_left;
   for (Eigen::Index k = 0; k < v.size(); ++k) v[k] = random_part(k, 2);
   v_left = v;
@@ -92,17 +202,19 @@ void AllowedMotions::find_constraints() {
 double AllowedMotions::spin_of(int tube, const VectorXd& f) const {
   double sum = 0;
   for (int e = topology_.tube_begin[tube]; e < topology_.tube_begin[tube + 1]; ++e)
-    sum += axis_[static_cast<std::size_t>(e)].dot(Vector3(f.segment<3>(6 * static_cast<Eigen::Index>(e) + 3)));
+    if (mass_[6 * static_cast<Eigen::Index>(e)] > 0)
+      sum += axis_[static_cast<std::size_t>(e)].dot(Vector3(f.segment<3>(6 * static_cast<Eigen::Index>(e) + 3)));
   return sum;
 }
 
-// All elements of a tube have one inertia.
-void AllowedMotions::without_spins(VectorXd& u) const {
+// All elements of a tube have one inertia. Images turn as their originals, and no force acts on them.
+void AllowedMotions::without_spins(VectorXd& u, bool of_images) const {
   for (int t = 0; t < topology_.tubes(); ++t) {
     if (!spins_[static_cast<std::size_t>(t)]) continue;
-    const double mean = spin_of(t, u) / topology_.length_of(t);
+    const double mean = spin_of(t, u) / topology_.own_elements(t);
     for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e)
-      u.segment<3>(6 * static_cast<Eigen::Index>(e) + 3) -= mean * axis_[static_cast<std::size_t>(e)];
+      if (of_images || mass_[6 * static_cast<Eigen::Index>(e)] > 0)
+        u.segment<3>(6 * static_cast<Eigen::Index>(e) + 3) -= mean * axis_[static_cast<std::size_t>(e)];
   }
 }
 
@@ -163,7 +275,7 @@ void AllowedMotions::find_neutral(const VectorXd& internal) {
     if ((load_forces(loads_, there) - expected).cwiseAbs().maxCoeff() > unmoved * size) continue;
     if (std::fabs(u.dot(internal)) > 1e-6 * sizes + 1e-9) continue;
     Whole whole{u, u, std::string(k < 3 ? "moves the whole along " : "turns the whole about ") + axes[k % 3]};
-    without_spins(whole.motion);
+    without_spins(whole.motion, true);
     const double before = u.dot(mass_.cwiseProduct(u));
     for (int pass = 0; pass < 2; ++pass)
       for (const Whole& other : whole_)
@@ -177,13 +289,13 @@ void AllowedMotions::find_neutral(const VectorXd& internal) {
 
 void AllowedMotions::project_motion(VectorXd& u) const {
   constrain_motion(state_, u);
-  without_spins(u);
+  without_spins(u, true);
   for (const Whole& w : whole_) u -= w.motion.dot(mass_.cwiseProduct(u)) * w.motion;
 }
 
 void AllowedMotions::project_force(VectorXd& f) const {
   constrain_force(state_, f);
-  without_spins(f);
+  without_spins(f, false);
   for (const Whole& w : whole_) f -= w.motion.dot(f) * mass_.cwiseProduct(w.motion);
 }
 

@@ -8,6 +8,15 @@
 //
 // such as that of a clamp whose elements press on it from all sides.
 //
+// A slice of an endless rope (TubeGroups::images) has other projections. Its energy U is that of one period, by the
+// places of its own elements and, where it is free, by the period L. P moves images as their originals move and L
+// grows. A force has its part on each own element, and that on L,
+//
+//   -dU/dL = sum s f_z / 2    over the images, s = 1 for the upper ones and -1 for the lower ones,
+//
+// which stands on the images and their originals so that a force times an allowed motion is the work. P' makes this
+// of the forces on all elements. P' of such a force is not the force again.
+//
 // Moves of the whole, its turns and spins of single tubes are neutral where constraints allow them, and where
 // neither loads nor terms feel them. They are taken out of motions and forces.
 //
@@ -27,7 +36,10 @@ class AllowedMotions {
   // At the state of the simulation.
   explicit AllowedMotions(const Simulation& s);
 
+  // Of each unknown; none of images.
   const Eigen::VectorXd& mass() const { return mass_; }
+  // Adds `by` times the inertial forces of an allowed motion.
+  void add_inertia(double by, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
   // For each unknown, whether the constraints hold it by itself.
   const std::vector<char>& held() const { return held_; }
   bool constrained() const { return constrained_; }
@@ -40,6 +52,23 @@ class AllowedMotions {
   bool keeps_momentum() const { return keeps_momentum_; }
   // Whether P moves with the state.
   bool turns() const { return turns_; }
+  // Of each unknown, whether the constraints tie it to others.
+  const std::vector<char>& tied() const { return tied_; }
+  // Forces and motions under the constraints alone, motions without stiffness included.
+  void constrain_motion(Eigen::VectorXd& u) const { constrain_motion(state_, u); }
+  void constrain_force(Eigen::VectorXd& f) const { constrain_force(state_, f); }
+  // Motions without stiffness: spins of single tubes, and orthonormal ones of the whole.
+  std::vector<Eigen::VectorXd> spins() const;
+  std::vector<Eigen::VectorXd> wholes() const;
+
+  // Of a slice whose period is free: the force on the period (eV/nm) in a force as project_force() has it; that
+  // force without it; and the motion that strains all by the same part, of unit growth of the period. Else: 0, the
+  // same, empty.
+  double force_on_period(const Eigen::VectorXd& f) const;
+  Eigen::VectorXd without_period(const Eigen::VectorXd& f) const;
+  Eigen::VectorXd stretch() const;
+  // Makes it a motion in which the period stays.
+  void let_period_stay(Eigen::VectorXd& u) const;
 
   // eV: the largest sum of the torques about its axis, of tubes whose spin is neutral.
   double largest_spin(const Eigen::VectorXd& force) const;
@@ -51,7 +80,10 @@ class AllowedMotions {
   void constrain_force(const State& at, Eigen::VectorXd& f) const;
   void find_constraints();
   void find_neutral(const Eigen::VectorXd& internal);
-  void without_spins(Eigen::VectorXd& u) const;
+  void without_spins(Eigen::VectorXd& u, bool of_images) const;
+  void find_images();
+  double growth_of(const Eigen::VectorXd& u) const;
+  void put_on_period(double force, Eigen::VectorXd& f) const;
   double spin_of(int tube, const Eigen::VectorXd& f) const;
 
   const Topology& topology_;
@@ -59,7 +91,14 @@ class AllowedMotions {
   State state_;
   mutable State scratch_;
   Eigen::VectorXd mass_;
-  std::vector<char> held_;
+  std::vector<char> held_, tied_;
+  struct Image {
+    Eigen::Index row = 0, original = 0;  // of their first unknowns
+    double sign = 1, part = 0;           // of the mass of all images
+    Eigen::Matrix3d turn;                // from the original
+  };
+  std::vector<Image> images_;
+  bool free_period_ = false;
   bool constrained_ = false, turns_ = false, keeps_momentum_ = true;
   std::vector<Vector3> axis_;
   std::vector<char> spins_;  // of each tube: its spin is neutral

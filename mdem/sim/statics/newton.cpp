@@ -7,6 +7,7 @@
 #include "model/contract.hpp"
 #include "model/counter_random.hpp"
 #include "model/error.hpp"
+#include "sim/statics/end_words.hpp"
 
 namespace ropewalk {
 namespace {
@@ -67,7 +68,10 @@ NewtonStatics::Refusal NewtonStatics::refusal(const Simulation& s) {
 // The largest of what is free.
 void NewtonStatics::look(At& at) {
   out_.spinning = at.allowed.largest_spin(forces_of(s_));
-  out_.largest_force = out_.largest_torque = out_.relaxed.force = 0;
+  const double on_strand =
+      std::fabs(at.allowed.force_on_period(at.force)) / static_cast<double>(s_.topology().strands());
+  out_.largest_force = out_.relaxed.force = on_strand;
+  out_.largest_torque = 0;
   for (int t = 0; t < s_.topology().tubes(); ++t)
     for (int e = s_.topology().tube_begin[t]; e < s_.topology().tube_begin[t + 1]; ++e) {
       const auto row = 6 * static_cast<Eigen::Index>(e);
@@ -80,17 +84,31 @@ void NewtonStatics::look(At& at) {
 
 Solution NewtonStatics::solve(const At& at, double shift, const VectorXd& b, double tolerance, VectorXd& x) {
   const AllowedMotions& allowed = at.allowed;
-  const VectorXd& mass = allowed.mass();
-  const Preconditioner chain(s_.topology(), s_.state(), sections_, *at.k, mass, shift, allowed.held());
+  const Preconditioner chain(s_.topology(), s_.state(), sections_, *at.k, allowed.mass(), shift, allowed.held());
   const Operator a = [&](const VectorXd& v, VectorXd& y) {
     at.k->multiply(v, y);
-    y.noalias() += shift * mass.cwiseProduct(v);
     allowed.add_constraint_stiffness(at.borne, v, y);
     allowed.project_force(y);
+    allowed.add_inertia(shift, v, y);
   };
+  VectorXd stretch = allowed.stretch();  // the period would else be the softest by far
+  double stiffness = 0;                  // against it
+  if (stretch.size() > 0) {
+    allowed.project_motion(stretch);
+    VectorXd resistance;
+    a(stretch, resistance);
+    stiffness = std::max(std::fabs(stretch.dot(resistance)), 1e-9);
+  }
   const Precondition m = [&](const VectorXd& r, VectorXd& z) {
-    chain.solve(r, z);
+    if (stretch.size() == 0) {
+      chain.solve(r, z);
+      allowed.project_motion(z);
+      return;
+    }
+    chain.solve(allowed.without_period(r), z);
+    allowed.let_period_stay(z);
     allowed.project_motion(z);
+    z += (stretch.dot(r) / stiffness) * stretch;
   };
   const Solution found = out_.symmetric ? conjugate_gradients(a, m, b, tolerance, most_products, x)
                                         : bicgstab(a, m, b, tolerance, most_products, x);
@@ -268,38 +286,16 @@ Statics NewtonStatics::follow(double until, const RelaxGoal& goal, const std::fu
   return out;
 }
 
-std::string overloaded_bond(const Simulation& s) {
-  constexpr double nearly_slipping = 80 * units::degree;
-  const Topology& topology = s.topology();
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const TubeType& type = topology.type_of(t);
-    const Anharmonic& h = type.bond.anharmonic;
-    for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      const Frame a = frame_of(s.state().orientation[i]), b = frame_of(s.state().orientation[i + 1]);
-      const double twist = std::fabs(bond_twist_angle(a, b)), bend = std::acos(std::min(1.0, a.t.dot(b.t)));
-      const double per_length = h.radius / type.element_length;
-      const char* what = h.used && per_length * twist >= h.max_shear ? "has collapsed"
-                         : h.used && per_length * bend >= h.max_bend ? "has kinked"
-                         : twist > nearly_slipping ? "has a bond that slips at a twist of 90 degrees"
-                                                   : nullptr;
-      if (what)
-        return "tube " + std::to_string(t) + " " + what + " at element " +
-               std::to_string(e - topology.tube_begin[t]) + ": the load is more than it bears";
-    }
-  }
-  return "";
-}
-
 Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
   NewtonPace* pace = &s_.relaxation_with(goal);
   out_ = {};
+  const bool by_fire = options_.fire && !is_slice();
   const bool rested = s_.last_rest().step == s_.step_count();
   if (pace->rate == 0) {
     const bool near = roughly_ || options_.near;
-    pace->newton = rested || near || !options_.fire;
+    pace->newton = rested || near || !by_fire;
     pace->rate = rested ? options_.least_rate : near ? nearly_free : options_.first_rate;
   }
   const auto done = [&] { return static_cast<long>(s_.step_count() - (s_.relaxation_began())); };
@@ -358,7 +354,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         // Under loads without a potential the symmetric part does not tell what grows.
         const std::optional<VectorXd> motion = out_.symmetric ? falling_motion(at) : std::nullopt;
         if (!motion) return end_by(Statics::End::at_rest);
-        const bool came_back = pace->saddles > 0 && !(at.energy < pace->saddle_energy - enough);
+        const bool came_back = !is_slice() && pace->saddles > 0 && !(at.energy < pace->saddle_energy - enough);
         if (came_back) --out_.relaxed.saddles;
         if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(*motion)) {
           out_.falls = true;
@@ -378,10 +374,12 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       const double far = farthest(d), scale = far > options_.farthest ? options_.farthest / far : 1.0;
       const Simulation before = s_;
       const bool fine = move(scale * d);
-      const double change = energy_of(s_) - at.energy, noise = 1e-10 * std::fabs(at.energy);
       VectorXd left = forces_of(s_);
       AllowedMotions(s_).project_force(left);
       const double end = scale * left.dot(d), first = scale * gain;
+      // The energy of a slice is known by the work of its forces alone: energies count the images too.
+      const double change = is_slice() ? -0.5 * (first + end) : energy_of(s_) - at.energy,
+                   noise = 1e-10 * std::fabs(at.energy) + 1e-12;
       if (!fine || !(change < -1e-4 * first + noise) || !(end > -1.5 * std::fabs(first) - 1e-9)) {
         ++out_.refused;
         s_ = before;
@@ -396,7 +394,8 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       const double by_model =
           scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
       const double disagreement = std::fabs(end - by_model) / std::fabs(first);
-      if (disagreement < 0.3 && scale > 0.3)
+      // What is left of forces at rest is rounding, which no model foresees.
+      if ((disagreement < 0.3 && scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
         pace->rate = std::max(options_.least_rate, pace->rate / 3);
       else if (end - by_model < -0.7 * std::fabs(first))
         pace->rate *= 2;
@@ -409,7 +408,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
     if (options_.most_overloaded > 0 && overloaded >= options_.most_overloaded)
       return end_by(Statics::End::out_of_steps);
     if (moved_on) continue;
-    if (roughly_ || !options_.fire || done() >= max_steps) return end_by(Statics::End::refused);
+    if (roughly_ || !by_fire || done() >= max_steps) return end_by(Statics::End::refused);
     pace->newton = false;
   }
 }

@@ -28,16 +28,19 @@
 namespace ropewalk {
 
 struct NewtonOptions {
-  bool fire = false;  // FIRE goes first, and again where Newton's steps are refused
+  bool fire = false;  // FIRE goes first, and again where Newton's steps are refused; not in a slice
   bool near = false;  // of rest: Newton's method goes first, with a smaller shift
   int most = 1000;    // steps of Newton's method; no state of rest that was met needed a fifth of them
-  int most_overloaded =
-      0;  // steps with a bond beyond its window, one after the other, after which it ends; 0: any number
+  // Steps with a bond beyond its window, one after the other, after which it ends; 0: any number.
+  int most_overloaded = 0;
   double farthest = 0.15;  // nm, of an element in a step; turns at the radius
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count
 };
+
+// A wall that has collapsed bears no more, however long it is turned.
+inline constexpr int enough_overloaded = 60;
 
 // How a search for a state of rest ended.
 struct Statics {
@@ -57,9 +60,6 @@ struct Statics {
   int newton_steps = 0, refused = 0;
   long products = 0;
 };
-
-// A bond that has left the window of its data, or is about to slip, in words; empty: there is none.
-std::string overloaded_bond(const Simulation& simulation);
 
 class NewtonStatics {
  public:
@@ -83,6 +83,7 @@ class NewtonStatics {
  private:
   struct At;  // what is known of the present state
   void look(At& at);
+  bool is_slice() const { return s_.topology().groups.images > 0; }
   Solution solve(const At& at, double shift, const Eigen::VectorXd& b, double tolerance, Eigen::VectorXd& x);
   Statics come_near_rest(const std::function<bool(long)>& progress);
   bool follow_once(const At& at, double until);

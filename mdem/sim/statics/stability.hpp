@@ -16,9 +16,11 @@ struct Stability {
   bool stable() const { return growth <= neutral; }
 };
 
-// Returns nothing, and the reason in `why`, where constraints tie several elements, a term has no tangent, the
-// decomposition would take more than `most_bytes`, or no eigenvalue was found.
-std::optional<Stability> stability_of(const Simulation& simulation, double most_bytes, std::string& why);
+// Returns nothing, and the reason in `why`, where the modes are not those of the constraints, a term has no
+// tangent, the decomposition would take more than `most_operations`, or no eigenvalue was found.
+std::optional<Stability> stability_of(const Simulation& simulation, double most_operations, std::string& why);
+// Above which judge_stability() does without the modes.
+inline constexpr double affordable_operations = 1e11;
 
 // What is known of a state at which Newton's method has come to rest.
 struct Statics;

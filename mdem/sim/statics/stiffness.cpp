@@ -41,6 +41,7 @@ const BlockMatrix& StiffnessMaker::make(const Simulation& s) {
       add_line_contact(s, *line);
     else
       add_contact(s);
+    drop_what_is_not_reached();
   }
   add_bonds(s);
   add_terms(s);
@@ -59,6 +60,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
   k_.begin.assign(1, 0);
   k_.column.clear();
   touches_.clear();
+  bonded_.clear();
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
       const bool bonded = i + 1 < topology.tube_begin[t + 1];
@@ -66,6 +68,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
       if (bonded) {
         k_.column.push_back(i + 1);
         touches_.push_back(false);
+        bonded_.push_back(true);
       }
       if (reach > 0)
         s.list().for_neighbours(i, [&](int j) {
@@ -75,6 +78,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
           } else {
             k_.column.push_back(j);
             touches_.push_back(true);
+            bonded_.push_back(false);
           }
         });
       k_.begin.push_back(static_cast<int>(k_.column.size()));
@@ -115,9 +119,9 @@ void StiffnessMaker::add_line_contact(const Simulation& s, const LineLaw& law) {
       const auto b = static_cast<std::size_t>(j);
       const auto types = static_cast<std::size_t>(type_[a] * law.types() + type_[b]);
       const Vector3 separation = position[b] - position[a];
-      add_line_stiffness(nodes_[types], separation.data(), axis_[a].data(), axis_[b].data(), scratch[types],
-                         k_.diagonal[a].data(), k_.diagonal[b].data(),
-                         k_.block[static_cast<std::size_t>(at)].data());
+      touches_[static_cast<std::size_t>(at)] = add_line_stiffness(
+          nodes_[types], separation.data(), axis_[a].data(), axis_[b].data(), scratch[types], k_.diagonal[a].data(),
+          k_.diagonal[b].data(), k_.block[static_cast<std::size_t>(at)].data());
     }
   }
 }
@@ -132,7 +136,9 @@ void StiffnessMaker::add_contact(const Simulation& s) {
       const auto b = static_cast<std::size_t>(j);
       const TypePair types{type_[a], type_[b]};
       const Pose pose_i = pose_of(s.state(), i), pose_j = pose_of(s.state(), j);
-      if (!law.reaches(types, pose_j.position - pose_i.position, axis_[a], axis_[b])) continue;
+      touches_[static_cast<std::size_t>(at)] =
+          law.reaches(types, pose_j.position - pose_i.position, axis_[a], axis_[b]);
+      if (!touches_[static_cast<std::size_t>(at)]) continue;
       const auto forces = [&](const Pose& p, const Pose& q) {
         const PairForce f =
             law.force(types, q.position - p.position, axis_of(p.orientation), axis_of(q.orientation));
@@ -144,6 +150,22 @@ void StiffnessMaker::add_contact(const Simulation& s) {
       k_.block[static_cast<std::size_t>(at)] += k.topRightCorner<6, 6>();
     }
   }
+}
+
+// Pairs whose points are too far apart cost as much in a product as others.
+void StiffnessMaker::drop_what_is_not_reached() {
+  std::size_t kept = 0, from = 0;
+  for (std::size_t row = 1; row < k_.begin.size(); ++row) {
+    for (const auto to = static_cast<std::size_t>(k_.begin[row]); from < to; ++from) {
+      if (!touches_[from] && !bonded_[from]) continue;
+      k_.column[kept] = k_.column[from];
+      k_.block[kept] = k_.block[from];
+      ++kept;
+    }
+    k_.begin[row] = static_cast<int>(kept);
+  }
+  k_.column.resize(kept);
+  k_.block.resize(kept);
 }
 
 void StiffnessMaker::add_terms(const Simulation& s) {
@@ -174,7 +196,87 @@ Tangent tangent_by_blocks(const Simulation& s) {
     all.segment<3>(row + 3) += forces.torque[i];
   }
   add_left_torque(all, k);
-  return tangent_with(s, k.sparse());
+  const Tangent::Matrix stiffness = k.sparse();
+  const std::optional<BlockMatrix> c = damping_blocks(s);
+  if (!c) return tangent_with(s, stiffness);
+  const Tangent::Matrix damping = c->sparse();
+  return tangent_with(s, stiffness, &damping);
+}
+
+namespace {
+
+// With what the motions (v_i, w_i, v_j, w_j) make of the velocities at their common point, and of the spins.
+using PairRows = Eigen::Matrix<double, 3, 12>;
+PairRows sliding(const Vector3& separation) {
+  const Matrix3d arm = 0.5 * cross(separation);
+  PairRows b;
+  b << -Matrix3d::Identity(), arm, Matrix3d::Identity(), arm;
+  return b;
+}
+PairRows spinning() {
+  PairRows b = PairRows::Zero();
+  b.middleCols<3>(3) = -Matrix3d::Identity();
+  b.rightCols<3>() = Matrix3d::Identity();
+  return b;
+}
+
+void add_pair_block(const PairMatrix& c, int i, int j, BlockMatrix& to) {
+  to.diagonal[static_cast<std::size_t>(i)] += c.topLeftCorner<6, 6>();
+  to.diagonal[static_cast<std::size_t>(j)] += c.bottomRightCorner<6, 6>();
+  to.column.push_back(j);
+  to.block.push_back(c.topRightCorner<6, 6>());
+}
+
+bool loads_feel_speeds(const Simulation& s) {
+  State still = s.state(), fast = still;
+  for (std::size_t i = 0; i < fast.size(); ++i) {
+    const auto number = [&](std::uint32_t k) {
+      return unit_interval(philox({static_cast<std::uint32_t>(i), k, 0, 0}, 5)[0]);
+    };
+    fast.velocity.set(i, {number(0), number(1), number(2)});
+    fast.angular_velocity.set(i, {number(3), number(4), number(5)});
+  }
+  still.velocity.set_to_zero();
+  still.angular_velocity.set_to_zero();
+  return load_forces(s.loads(), fast) != load_forces(s.loads(), still);
+}
+
+}  // namespace
+
+std::optional<BlockMatrix> damping_blocks(const Simulation& s) {
+  for (const auto& term : s.interaction().terms)
+    if (term->damping() > 0) return std::nullopt;
+  if (loads_feel_speeds(s)) return std::nullopt;
+  const Topology& topology = s.topology();
+  const Interaction& in = s.interaction();
+  BlockMatrix c;
+  c.diagonal.assign(s.state().size(), Block::Zero());
+  const double reach =
+      in.has_contact() && in.damped_contact() ? std::min(in.damping.contact.outer, in.cutoff()) : 0;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
+      const Vector3 x = s.state().position[static_cast<std::size_t>(i)];
+      const auto to = [&](int j) -> Vector3 { return s.state().position[static_cast<std::size_t>(j)] - x; };
+      if (in.damping.bond.rate > 0 && i + 1 < topology.tube_begin[t + 1]) {
+        const PairRows slip = sliding(to(i + 1)), spin = spinning();
+        const double half = 0.5 * in.damping.bond.rate;
+        add_pair_block(half * type.mass * slip.transpose() * slip + half * type.inertia * spin.transpose() * spin,
+                       i, i + 1, c);
+      }
+      if (reach > 0)
+        s.list().for_neighbours(i, [&](int j) {
+          const Vector3 separation = to(j);
+          const double distance = separation.norm();
+          if (!(distance < reach)) return;
+          const PairRows slip = sliding(separation);
+          add_pair_block(in.damping.contact.eta * in.damping.contact.weight(distance) * slip.transpose() * slip, i,
+                         j, c);
+        });
+      c.begin.push_back(static_cast<int>(c.column.size()));
+    }
+  }
+  return c;
 }
 
 VectorXd load_forces(const LoadsAndConstraints& loads, const State& state) {

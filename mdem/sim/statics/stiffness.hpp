@@ -17,6 +17,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,11 +41,12 @@ class StiffnessMaker {
   void add_bonds(const Simulation& s);
   void add_line_contact(const Simulation& s, const LineLaw& law);
   void add_contact(const Simulation& s);
+  void drop_what_is_not_reached();
   void add_terms(const Simulation& s);
 
   BlockMatrix k_;
-  std::vector<char> touches_;         // of each block above the diagonal: the pair is in the list
-  std::vector<LineNodePairs> nodes_;  // of tube types i, j at i * types + j
+  std::vector<char> touches_, bonded_;  // of each block above the diagonal: the pair is near; has a bond
+  std::vector<LineNodePairs> nodes_;    // of tube types i, j at i * types + j
   std::vector<Vector3> axis_;
   std::vector<int> type_;  // of each element
 };
@@ -52,7 +54,10 @@ class StiffnessMaker {
 // The name of a force term that has no tangent; empty: all have one.
 std::string term_without_tangent(const Simulation& s);
 
-// The same as tangent_of(), with K by blocks, where all terms have a tangent.
+// C: contact viscosity and bond damping, pair by pair. Nothing where a force term or a load has a part in it.
+std::optional<BlockMatrix> damping_blocks(const Simulation& s);
+
+// The same as tangent_of(), with K by blocks, where all terms have a tangent; C by blocks where there are such.
 Tangent tangent_by_blocks(const Simulation& s);
 
 // Forces and torques of the loads, element by element.

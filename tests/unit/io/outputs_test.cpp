@@ -19,7 +19,6 @@
 #include "report/tensile.hpp"
 #include "report/torsion.hpp"
 #include "run/events_file.hpp"
-#include "run/plan_check.hpp"
 #include "run/run_directory.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
@@ -46,7 +45,6 @@ TEST(OutputsPage, HasTheTablesOfTheCode) {
   EXPECT_EQ(outputs_table("`ropewalk compare --torsion --csv`"), columns_markdown(torsion_kind().columns));
   EXPECT_EQ(outputs_table("Limits in tables of runs"), columns_markdown(limit_columns()));
   EXPECT_EQ(outputs_table("Results in tables of runs"), columns_markdown(result_columns()));
-  EXPECT_EQ(outputs_table("`plan-check.csv`"), columns_markdown(plan_check_columns()));
   EXPECT_EQ(outputs_table("`ropewalk modes --csv`"), columns_markdown(mode_columns()));
   EXPECT_EQ(outputs_table("`static-rest.csv`"), columns_markdown(static_rest_columns()));
   EXPECT_EQ(outputs_table("`NAME-static.csv`"), columns_markdown(static_threshold_columns()));

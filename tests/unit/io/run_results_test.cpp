@@ -89,6 +89,28 @@ TEST(RunResults, StrengthIsThatOfARopeThatIsPulled) {
               ::testing::Contains("Stress passed its maximum, 4 GPa (0 N/tex), at a strain of 0.04."));
 }
 
+// A rope that is bent grows shorter, and its clamps bear its cohesion: that is no strength, and noise is no torque.
+TEST(RunResults, OfABentRopeIsItsMoment) {
+  std::vector<LogRow> log = twisted(1);
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    const double moment = log[k]["torque_upper_nN_nm"];
+    log[k]["torque_upper_x_nN_nm"] = 3 * moment, log[k]["torque_upper_y_nN_nm"] = -4 * moment;
+    log[k]["torque_upper_nN_nm"] = log[k]["torque_lower_nN_nm"] = 0.01 * moment;
+    log[k]["ends_strain"] = -1e-3 * static_cast<double>(k);
+  }
+  const RunResults r = run_results(log, {}, {});
+  EXPECT_EQ(r.bending_max, 2000);
+  EXPECT_THAT(result_sentences(r), ElementsAre("The bending moment passed its maximum, 2000 nN nm, at 4 ps.",
+                                               "The rope stored up to 0.6 MJ/kg."));
+  EXPECT_TRUE(std::isnan(r.torque_max));
+  EXPECT_TRUE(std::isnan(r.strength));
+  for (LogRow& row : log) row["torque_upper_nN_nm"] *= 1000, row["torque_lower_nN_nm"] *= 1000;
+  EXPECT_TRUE(std::isnan(run_results(log, {}, {}).bending_max)) << "it is twisted more than bent";
+  // Drawn out again from where twist had left it, still shorter than at the start.
+  for (std::size_t k = 0; k < log.size(); ++k) log[k]["ends_strain"] = -0.05 + 0.01 * static_cast<double>(k);
+  EXPECT_EQ(run_results(log, {}, {}).strength, 4);
+}
+
 TEST(LimitsInWords, SayWhichWhereAndSinceWhen) {
   const std::vector<LimitRecord> limits = {passed("strain", 3.5, 175), passed("wall_twist", 243.2, 130), {}};
   EXPECT_EQ(beyond_words(limits), "beyond strain from 3.5 ps on");

@@ -48,6 +48,20 @@ TEST(RopeSize, OfEndlessTubesIsThatOfItsTubes) {
   EXPECT_NEAR(heavy.size.mass, interior.size.mass, 1e-9 * interior.size.mass);
 }
 
+// 40 atoms of 12.011 u in 0.2485 nm of (10,10) are 3.21e-9 tex a tube.
+TEST(RopeSize, InUnitsOfYarns) {
+  const Sized rope("[rope]\ntubes = 19\nlength_nm = 20\n" + run);
+  const double per_nm = 19 * rope.scene.sets[0].atoms_per_length * 12.011 * 1.66053907e-27,  // kg/nm
+      density = per_nm / (19 * rope.cell()) * 1e27;                                          // kg/m^3
+  EXPECT_EQ(
+      size_words(rope.size),
+      fmt::format("linear density {:.4g} tex, cross-section {:.4g} nm^2, {:.4g} g/cm^3: 1 GPa is {:.3g} N/tex",
+                  per_nm * 1e15, 19 * rope.cell(), density * 1e-3, 1e3 / density));
+  EXPECT_NEAR(per_nm * 1e15, 19 * 3.21e-9, 1e-10);
+  EXPECT_EQ(size_words(RopeSize()), "");
+  EXPECT_NEAR(yarn_turns(7.16245 * units::degree, 20e3), 2000e-9, 1e-14);
+}
+
 // Neither the ends of its tubes nor the images at its own ends count in a yarn.
 TEST(RopeSize, OfAYarnIsThatOfItsTubes) {
   const std::string tubes = "[rope]\ntubes = 7\nlength_nm = 100\ntube_length_nm = 20\n";

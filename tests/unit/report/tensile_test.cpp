@@ -75,6 +75,22 @@ TEST(Tensile, BeginsWhereAHeldRopeIsDrawnOut) {
   EXPECT_TRUE(t.to_half);
 }
 
+// A yarn of 20 um with 2000 turns per metre has a surface at atan(0.04 pi) to its axis: 7.162 degrees.
+TEST(Tensile, TurnsPerMetreStandBesideTheAngle) {
+  std::vector<LogRow> log = log_of(pull);
+  for (LogRow& row : log) row["beta_deg"] = 7.16245;
+  const std::vector<LoadTestGroup> groups = {{"a", "", {load_test(tensile_test(log, {}))}}};
+  LoadTestKind kind = tensile_kind();
+  EXPECT_EQ(load_tests_csv(kind, groups, "beta_deg").find("turns_per_m"), std::string::npos);
+  kind.yarn_diameter = 20e3;
+  const std::string csv = load_tests_csv(kind, groups, "beta_deg");
+  EXPECT_THAT(csv, HasSubstr("to_half,beta_deg,turns_per_m,strength_GPa,"));
+  EXPECT_THAT(csv, HasSubstr(",7.16245,2000,3,"));
+  Figures figures;
+  EXPECT_THAT(load_tests_part(kind, groups, "beta_deg", "", figures),
+              HasSubstr("<th>turns per metre of a yarn of 20 µm</th>"));
+}
+
 TEST(Tensile, ARunThatEndsEarlyIsSaidToHave) {
   std::vector<Point> part(pull.begin(), pull.begin() + 6);
   EXPECT_FALSE(tensile_test(log_of(part), {}).to_half);

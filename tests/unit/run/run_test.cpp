@@ -151,6 +151,24 @@ TEST_F(Stops, WithLinksFrictionAndBrokenTubes) {
   expect_same_when_asked(linked, whole, 9);
 }
 
+TEST_F(Stops, WithoutEventsThatWereTakenAway) {
+  RunSettings first;
+  first.steps = 200;
+  run("part", linked, first);
+  fs::remove(dir_ / "part/events.csv");
+  Follower follower;
+  go_through(resume_run(run_dir("part"), ResumeSettings(), follower));
+  EXPECT_THAT(follower.said, HasSubstr("events.csv is missing"));
+  EXPECT_THAT(follower.said, HasSubstr("events begin anew here; those before are lost"));
+  run("whole", linked);
+  EXPECT_EQ(read_file((dir_ / "part/log.csv").string()), read_file((dir_ / "whole/log.csv").string()));
+  const std::string left = read_file((dir_ / "part/events.csv").string()),
+                    all = read_file((dir_ / "whole/events.csv").string());
+  const std::string lines = left.substr(left.find('\n') + 1);
+  ASSERT_LT(lines.size(), all.size());
+  EXPECT_EQ(lines, all.substr(all.size() - lines.size()));
+}
+
 TEST_F(Stops, WhereElementsAreSplit) {
   RunSettings asked;
   asked.on_limit = OnLimit::refine;

@@ -14,10 +14,7 @@ namespace ropewalk::validate {
 // 12-6 law between beads. Two long parallel rows have the given spacing (nm) and mean energy per length (eV/nm).
 class BeadLaw : public ContactLaw {
  public:
-  static constexpr double uncut = 40;  // sigmas: as good as no cutoff
-
-  // The cutoff in sigmas; from 4 on only forces of 1e-4 of the largest are cut off.
-  BeadLaw(double spacing, double energy, double element_length, double cutoff) : reach_(cutoff) {
+  BeadLaw(double spacing, double energy, double element_length) {
     // int (R^2 + z^2)^-3 dz = 3 pi/8 R^-5 and int (R^2 + z^2)^-6 dz = 63 pi/256 R^-11.
     const double attraction = 3 * units::pi / 8, repulsion = 63 * units::pi / 256;
     const double x = 5 * attraction / (11 * repulsion);  // (sigma/R)^6 at the minimum
@@ -25,7 +22,7 @@ class BeadLaw : public ContactLaw {
     epsilon_ = energy * element_length * element_length / (4 * spacing * (x * x * repulsion - x * attraction));
   }
   std::string name() const override { return "beads of another code"; }
-  double cutoff() const override { return reach_ * sigma_; }
+  double cutoff() const override { return 40 * sigma_; }  // as good as no cutoff
   PairForce force(TypePair, const Vector3& separation, const Vector3&, const Vector3&) const override {
     PairForce f;
     const double r2 = separation.squaredNorm(), y = std::pow(sigma_ * sigma_ / r2, 3);
@@ -41,7 +38,7 @@ class BeadLaw : public ContactLaw {
     return 4 * epsilon_ * (y * y - y);
   }
 
-  double epsilon_ = 0, sigma_ = 0, reach_ = 0;  // eV, nm, sigmas
+  double epsilon_ = 0, sigma_ = 0;  // eV, nm
 };
 
 }  // namespace ropewalk::validate

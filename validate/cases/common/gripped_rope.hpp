@@ -1,10 +1,7 @@
-// A rope of seven parallel tubes between two grips: where the cases of other codes compare methods, and the
-// elements in place of a rope of atoms.
+// A rope of seven parallel tubes between two grips, with elements in place of a rope of atoms.
 //
 // A grip holds the positions and orientations of the outermost elements of every tube. The length between the inner
-// ones deforms; it is a whole number of bonds. The grips keep their distance along the axis. Grips of beads hold
-// places alone: a tube then leaves the last bond within the grip by a hinge, half a bond further out than an
-// element whose orientation is held.
+// ones deforms; it is a whole number of bonds. The grips keep their distance along the axis.
 #pragma once
 
 #include <memory>
@@ -20,15 +17,13 @@ struct GrippedRope {
   Topology topology;
   Interaction interaction;
   State state;
-  Forces forces;                  // of relax()
+  Forces forces;                  // result of relax()
   std::vector<int> lower, upper;  // elements of the grips
   int bonds = 0;                  // between the grips, of each tube
   int held = 0;                   // elements of a grip in each tube
   double spacing = 0;             // nm
-  bool holds_orientations = true;
 
-  GrippedRope(const ParameterSet& set, int bonds, std::shared_ptr<const ContactLaw> law, double spacing,
-              int held = 2);
+  GrippedRope(const ParameterSet& set, int bonds, std::shared_ptr<const ContactLaw> law, double spacing, int held);
   int elements_of_tube() const { return bonds + 2 * held - 1; }
   // Part of the way from the lower grip (0) to the upper one (1).
   double fraction_at(int element) const;
@@ -38,15 +33,5 @@ struct GrippedRope {
   void relax(double tolerance);
   double moment() const;  // eV, on the upper grip
 };
-// With the line law of the set, at the distance at which it binds best.
-GrippedRope gripped_rope(const ParameterSet& set, int bonds);
-
-// Torsion energy (eV) of seven tubes wound around each other by `angle` (rad). A tube on a helix of angle beta
-// twists by angle cos(beta); the rest is writhe.
-//   E = GJ angle^2 (1 + 6 cos^2 beta)/2L,   tan(beta) = spacing angle/L
-double torsion_energy(const BondStiffness& bond, double spacing, double length, double angle);
-
-// Integral of an odd number of values at even distances, by Simpson's rule.
-double simpson_sum(const std::vector<double>& values, double distance);
 
 }  // namespace ropewalk::validate

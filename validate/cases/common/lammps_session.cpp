@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <chrono>
 #include <filesystem>
 #include <numeric>
@@ -127,13 +126,6 @@ double row_height(Chirality c, const TubeShape& shape) {
 double natural_twist(const ParameterSet& set) {
   const Quantity* twist = find_quantity(set, "atomistic.natural_twist");
   return twist ? twist->value : 0;
-}
-
-std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn) {
-  const Eigen::AngleAxisd rotation(turn, Vector3::UnitZ());
-  std::vector<Vector3> atoms;
-  for (const Site& site : strip_sites(c, hexagons)) atoms.push_back(rotation * place(c, site, shape));
-  return atoms;
 }
 
 }  // namespace ropewalk::validate

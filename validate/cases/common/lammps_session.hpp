@@ -16,7 +16,7 @@
 
 namespace ropewalk::validate {
 
-using calibrate::angstrom, calibrate::header_commands, calibrate::data_file;
+using calibrate::header_commands, calibrate::data_file;
 using calibrate::AtomLaw, calibrate::Shell, calibrate::Well;
 using calibrate::extra_hexagons, calibrate::hexagons_in, calibrate::held_band;
 using calibrate::FiniteTube, calibrate::RelaxedTube;
@@ -71,8 +71,5 @@ double row_height(Chirality c, const TubeShape& shape);
 
 // Natural twist of the set's tube, rad/nm; 0 where the set has none.
 double natural_twist(const ParameterSet& set);
-
-// The atoms of a relaxed tube of `hexagons` hexagons, from z = 0 upwards, turned about its axis (nm, rad).
-std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn = 0);
 
 }  // namespace ropewalk::validate

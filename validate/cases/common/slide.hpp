@@ -15,15 +15,10 @@ struct Slide {
 
   double mean() const;
   double corrugation() const;  // highest less lowest energy
-  // Largest force per length that resists sliding, eV/nm^2.
-  double resistance(double element_length) const;
   // Difference from the mean, in percent of the well.
   std::vector<double> relative(double well) const;
 };
 
-// Energy per length (eV/nm) of rows that are shifted by these parts of an element.
-double rows_energy(const ContactLaw& law, double element_length, const Places& rows,
-                   const std::vector<double>& shift);
 // The first row slides by one element along the others.
 Slide slide_first(const ContactLaw& law, double element_length, const Places& rows);
 

@@ -35,11 +35,8 @@ std::string pair_commands(const AtomLaw& law, const std::string& boundary, const
 }
 
 std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift) {
-  std::vector<Vector3> atoms =
-      tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)));
-  const double up = shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon;
-  for (Vector3& atom : atoms) atom.z() += up;
-  return atoms;
+  return tube_atoms(c, shape, hexagons, 2 * units::pi * turn / static_cast<double>(row_hexagons(c)),
+                    shift * row_height(c, shape) - 0.5 * static_cast<double>(hexagons) * shape.length_per_hexagon);
 }
 
 std::string move_two(const Vector3& by) {

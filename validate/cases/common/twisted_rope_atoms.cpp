@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atomistic/runs.hpp"
-#include "atoms/potential.hpp"
+#include "atoms/relax_atoms.hpp"
 #include "atoms/tube_reference.hpp"
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"
@@ -16,7 +16,7 @@ namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7;
-constexpr double golden = 0.6180339887498949;  // of the additive sequence that spreads the registries
+constexpr double golden = 0.6180339887498949;  // step of the additive sequence that spreads the registries
 
 double part(double x) { return x - std::floor(x); }
 
@@ -119,18 +119,7 @@ std::string rope_data(const std::vector<RopeTube>& rope) {
 }
 
 std::string rope_pairs(const Potential& potential, const UniversalLine& law) {
-  std::string text = "pair_style hybrid/overlay";
-  for (int t = 0; t < tubes; ++t) text += " " + potential.pair_style;
-  text += fmt::format(" lj/cut {:.6f}\n", law.lj_cutoff / angstrom);
-  for (int t = 1; t <= tubes; ++t) {
-    text += fmt::format("pair_coeff * * {} {} {}", potential.pair_style, t, potential.file);
-    for (int k = 1; k <= tubes; ++k) text += k == t ? " C" : " NULL";
-    text += "\n";
-  }
-  for (int t = 1; t < tubes; ++t)
-    text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", t, t + 1, tubes, law.epsilon,
-                        law.sigma / angstrom);
-  return text;
+  return pair_lines({potential, law.epsilon, law.sigma, law.lj_cutoff}, tubes);
 }
 
 std::string rope_groups(const std::vector<RopeTube>& rope) {

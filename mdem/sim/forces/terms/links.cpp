@@ -14,7 +14,6 @@
 namespace ropewalk {
 namespace {
 
-constexpr double never = -1;                         // ps
 constexpr double forming_interval = 1;               // ps
 constexpr std::uint32_t room_question = 0xFFFFFFFF;  // a number k of drawn() that no link takes
 
@@ -149,11 +148,11 @@ void choose_at_end(const LinkLaw& law, const Topology& topology, const State& st
 
 // --- the term ------------------------------------------------------------------------------------------
 
-// With times (ps) and places (nm) of its forming and breaking.
+// When (ps) and where (nm) it formed.
 struct Link {
   LinkPlace at;
-  double formed = 0, broke = never;
-  Vector3 formed_at, broke_at;
+  double formed = 0;
+  Vector3 formed_at;
 };
 
 // A link that acts between these elements: as it was placed, or as its image.
@@ -169,14 +168,16 @@ struct LinkAction {
   double pull = 0;  // the size of the force, without what pushes the walls apart
 };
 
-constexpr std::size_t numbers_of_link = 21;
+constexpr double told = 1;  // in a memory: that its links formed has been told
+constexpr std::size_t numbers_of_head = 5, numbers_of_link = 17;
+// Version 0.3.0 remembered links that had broken too. The last number is the time, or -1.
+constexpr std::size_t numbers_of_head_0_3 = 4, numbers_of_link_0_3 = 21;
 
 class LinkTerm : public ForceTerm {
  public:
   LinkTerm(LinkLaw law, std::vector<LinkPlace> at_start, const Topology& scene)
       : law_(std::move(law)), scene_(scene), waits_(law_.placed_at > 0), stiffness_(stiffness_of(at_start)) {
-    for (LinkPlace& place : at_start)
-      links_.push_back({std::move(place), 0, never, Vector3::Zero(), Vector3::Zero()});
+    for (LinkPlace& place : at_start) links_.push_back({std::move(place), 0, Vector3::Zero()});
     sort();
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<LinkTerm>(*this); }
@@ -185,7 +186,10 @@ class LinkTerm : public ForceTerm {
   void prepare(const ListedScene& scene) override {
     ROPEWALK_EXPECTS(!scene.topology.part);
     if (!placed_) {
-      for (Link& link : links_) link.formed_at = action_of(link.at, link.at.a, link.at.b, scene.state).place;
+      for (Link& link : links_) {
+        link.formed_at = action_of(link.at, link.at.a, link.at.b, scene.state).place;
+        tell_formed(link);
+      }
       placed_ = true;
     }
     index();
@@ -205,20 +209,25 @@ class LinkTerm : public ForceTerm {
     given_ = 0;
     begun_ = 0;
     // Whether a link breaks follows from itself and not from its image, which stands behind it.
+    std::vector<char> broke(links_.size(), 0);
     for (std::size_t k = 0; k < acting_.size(); ++k) {
-      Link& link = links_[acting_[k].link];
+      const Link& link = links_[acting_[k].link];
       const LinkAction& now = actions_[k];
       const bool is_image = acting_[k].a != link.at.a;
       const bool breaks =
           (law_.strength > 0 && now.pull > law_.strength) || (law_.toughness > 0 && now.energy > law_.toughness);
-      if (is_image ? link.broke == never : !breaks) continue;
+      if (is_image ? broke[acting_[k].link] == 0 : !breaks) continue;
       all.lost += now.energy;
       if (is_image) continue;
-      link.broke = state.time;
-      link.broke_at = now.place;
+      broke[acting_[k].link] = 1;
+      events_.push_back({state.time, "link broke", link.at.a, link.at.b, now.place});
       ++all.events;
     }
     if (all.events > 0) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < links_.size(); ++k)
+        if (broke[k] == 0) links_[kept++] = links_[k];
+      links_.resize(kept);
       index();
       gather(state);
     }
@@ -251,16 +260,14 @@ class LinkTerm : public ForceTerm {
 
   bool remembers() const override { return true; }
   TermState memory() const override {
-    TermState out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0}}};
+    TermState out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0, told}}};
     for (const Link& link : links_) {
       TermRecord record{link.at.a, {static_cast<double>(link.at.b)}};
       const auto add = [&](const Vector3& v) {
         record.numbers.insert(record.numbers.end(), {v.x(), v.y(), v.z()});
       };
-      for (const Vector3* v :
-           {&link.at.p_a, &link.at.p_b, &link.at.n_a, &link.at.n_b, &link.formed_at, &link.broke_at})
-        add(*v);
-      record.numbers.insert(record.numbers.end(), {link.formed, link.broke});
+      for (const Vector3* v : {&link.at.p_a, &link.at.p_b, &link.at.n_a, &link.at.n_b, &link.formed_at}) add(*v);
+      record.numbers.push_back(link.formed);
       out.push_back(std::move(record));
     }
     return out;
@@ -270,39 +277,41 @@ class LinkTerm : public ForceTerm {
     if (memory.empty()) return;  // nothing has happened yet
     const auto fail = [] { throw std::runtime_error("the memory of links is damaged"); };
     links_.clear();
-    bool has_head = false;
+    events_.clear();
+    bool has_head = false, tells = false;
     for (const TermRecord& r : memory) {
       const std::vector<double>& x = r.numbers;
       if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) fail();
-      if (x.size() == 4 && !has_head) {
+      if ((x.size() == numbers_of_head || x.size() == numbers_of_head_0_3) && !has_head) {
         last_formed_ = x[0];
         begun_ = static_cast<int>(std::lround(x[1]));
         given_ = x[2];
         waits_ = x[3] != 0;
+        tells = x.size() == numbers_of_head && x[4] != told;
         has_head = true;
         continue;
       }
-      if (x.size() != numbers_of_link || !(x[0] >= 0 && x[0] < scene_.tube_begin.back()) ||
+      const bool of_0_3 = x.size() == numbers_of_link_0_3;
+      if ((x.size() != numbers_of_link && !of_0_3) || !(x[0] >= 0 && x[0] < scene_.tube_begin.back()) ||
           x[0] != std::floor(x[0]))
         fail();
+      if (of_0_3 && x.back() >= 0) continue;
       const auto vector = [&](std::size_t at) { return Vector3(x[at], x[at + 1], x[at + 2]); };
       Link link;
       link.at = {r.element, static_cast<int>(x[0]), vector(1), vector(4), vector(7), vector(10)};
       link.formed_at = vector(13);
-      link.broke_at = vector(16);
-      link.formed = x[19];
-      link.broke = x[20];
+      link.formed = x[of_0_3 ? 19 : 16];
       links_.push_back(link);
+      if (tells) tell_formed(link);
     }
     if (!has_head) fail();
     placed_ = true;
   }
 
-  // Whole links are there at the start; those that have broken are forgotten.
+  // All are there at the start.
   void begin_with(const TermState& memory) override {
     set_memory(memory);
-    links_.erase(std::remove_if(links_.begin(), links_.end(), [](const Link& link) { return link.broke != never; }),
-                 links_.end());
+    events_.clear();
     std::vector<LinkPlace> places;
     for (Link& link : links_) {
       link.formed = 0;
@@ -315,7 +324,8 @@ class LinkTerm : public ForceTerm {
   }
 
   // Where all elements are cut in two, each point goes to the half that it stands beside. Where the shorter
-  // elements stand in the old places, with new ones between them, it stays with the old one.
+  // elements stand in the old places, with new ones between them, it stays with the old one. The file events.csv of
+  // the finer run begins with the links that hold.
   TermState halved(const TermState& coarse, const std::vector<int>& heirs) const override {
     const bool cut = scene_.tube_begin.size() > 2 &&
                      heirs[static_cast<std::size_t>(scene_.tube_begin[1])] == 2 * scene_.tube_begin[1];
@@ -332,20 +342,16 @@ class LinkTerm : public ForceTerm {
       if (r.numbers.size() == numbers_of_link) {
         heir.element = move(r.element, &heir.numbers[1]);
         heir.numbers[0] = move(static_cast<int>(r.numbers[0]), &heir.numbers[4]);
+      } else {
+        heir.numbers.back() = 0;
       }
       fine.push_back(std::move(heir));
     }
     return fine;
   }
 
-  std::vector<TermEvent> events() const override {
-    std::vector<TermEvent> all;
-    for (const Link& link : links_) {
-      all.push_back({link.formed, "link formed", link.at.a, link.at.b, link.formed_at});
-      if (link.broke != never) all.push_back({link.broke, "link broke", link.at.a, link.at.b, link.broke_at});
-    }
-    return all;
-  }
+  std::vector<TermEvent> events() const override { return events_; }
+  void forget_events() override { events_.clear(); }
 
   std::size_t bytes() const override { return links_.size() * (sizeof(Link) + sizeof(LinkAction)); }
 
@@ -397,12 +403,16 @@ class LinkTerm : public ForceTerm {
     set_in_order(state);
   }
   void take_in(LinkPlace place, const State& state) {
-    Link link{std::move(place), state.time, never, Vector3::Zero(), Vector3::Zero()};
+    Link link{std::move(place), state.time, Vector3::Zero()};
     const LinkAction action = action_of(link.at, link.at.a, link.at.b, state);
     link.formed_at = action.place;
     given_ += (has_image(link.at) ? 2 : 1) * action.energy;
     ++begun_;
     links_.push_back(link);
+    tell_formed(link);
+  }
+  void tell_formed(const Link& link) {
+    events_.push_back({link.formed, "link formed", link.at.a, link.at.b, link.formed_at});
   }
 
   // New links, for the time since the last ones.
@@ -413,8 +423,7 @@ class LinkTerm : public ForceTerm {
     last_formed_ = state.time;
     std::vector<int> count(state.size(), 0);
     for (const Link& link : links_)
-      if (link.broke == never)
-        for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
+      for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
     // An element has room for a whole number of links. Its share, `most` times its length, is rounded up or down at
     // random, so that the mean over all elements is that share.
     const auto full = [&](int element) {
@@ -443,12 +452,10 @@ class LinkTerm : public ForceTerm {
   // Of a slice: a link to an image above acts on the original through its own image, one period lower.
   bool has_image(const LinkPlace& link) const { return scene_.is_image(link.a) || scene_.is_image(link.b); }
 
-  // Without those that have broken.
   void index() {
     acting_.clear();
     for (std::size_t k = 0; k < links_.size(); ++k) {
       const LinkPlace& at = links_[k].at;
-      if (links_[k].broke != never) continue;
       acting_.push_back({k, at.a, at.b});
       if (!has_image(at)) continue;
       const auto lower = [&](int e) { return scene_.is_image(e) ? scene_.original_of(e) : scene_.image_below(e); };
@@ -465,12 +472,13 @@ class LinkTerm : public ForceTerm {
   bool waits_ = false;         // for the time at which its links are placed
   double element_length_ = 0;  // nm; all types of a scene have the same
   double stiffness_ = 0;
-  std::vector<Link> links_;  // broken ones too: they are the history
+  std::vector<Link> links_;        // that hold
+  std::vector<TermEvent> events_;  // that nobody has written yet
   bool placed_ = false;
   double last_formed_ = 0;           // ps
   long begun_ = 0;                   // links that advance() has yet to count
   double given_ = 0;                 // eV, that links formed with; likewise
-  std::vector<ActingLink> acting_;   // whole ones, in their order
+  std::vector<ActingLink> acting_;   // in the order of the links
   std::vector<LinkAction> actions_;  // of each of them
   Rows of_first_, of_second_;        // acting links by a and by b
 };

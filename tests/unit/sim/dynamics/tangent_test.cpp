@@ -5,9 +5,13 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "scene/ends/grip.hpp"
 #include "scene/ends/twist.hpp"
 #include "scene/loads/fix.hpp"
 #include "sim/contact/line/law.hpp"
+#include "sim/statics/allowed_motions.hpp"
+#include "sim/statics/reduction.hpp"
+#include "sim/statics/stiffness.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -140,16 +144,64 @@ TEST(Tangent, AsksTheLoads) {
   }
 }
 
-TEST(FreeUnknowns, AreThoseThatNoConstraintHolds) {
+std::optional<Reduction> reduced(const Simulation& s) {
+  std::string why;
+  return reduction_of(s, why);
+}
+
+TEST(Reduction, LeavesOutWhatConstraintsHold) {
   const Topology topology = bundle().topology();
   LoadsAndConstraints loads;
   loads.add(FixLoad({4}, true, false, true, true));
-  const auto free = free_unknowns(bundle(loads));
-  ASSERT_TRUE(free);
-  for (std::size_t k = 0; k < free->size(); ++k) EXPECT_EQ((*free)[k] != 0, k / 6 != 4 || k % 6 == 1) << k;
-  EXPECT_TRUE(free_unknowns(bundle(twisted(TwistLoad::Application::couple, true, topology))));
-  EXPECT_FALSE(free_unknowns(bundle(twisted(TwistLoad::Application::couple, false, topology))))
-      << "the centre of a grip that is held ties its elements together";
+  const auto of = reduced(bundle(loads));
+  ASSERT_TRUE(of);
+  const VectorXd moved = of->motions * VectorXd::Ones(of->motions.cols());
+  for (Eigen::Index k = 0; k < moved.size(); ++k) EXPECT_EQ(moved[k] != 0, k / 6 != 4 || k % 6 == 1) << k;
+  EXPECT_EQ(reduced(bundle(twisted(TwistLoad::Application::couple, true, topology)))->mass.size(), moved.size());
+}
+
+// The forces of a clamp that may turn and move are those of one body, and their derivative has what its elements
+// press on it with.
+TEST(Reduction, OfAClampIsThatOfOneBody) {
+  const Topology topology = bundle().topology();
+  GripLoad grip;
+  grip.depth = 2;
+  for (GripAxis& axis : grip.axes) axis.is = GripAxis::Is::loaded, axis.points = {{0, 3}};
+  LoadsAndConstraints loads;
+  loads.add(grip.on_elements({0, 1, 9, 10, 18, 19, 27, 28}, topology));
+  const Simulation s = bundle(loads);
+  const auto of = reduced(s);
+  ASSERT_TRUE(of);
+  EXPECT_EQ(of->mass.size(), 6 * (topology.elements() - 8) + 6);
+  const MatrixXd k = of->forces * tangent_of(s).stiffness * of->motions + of->stiffness;
+  const AllowedMotions here(s);
+  const auto forces = [&](const VectorXd& u) {
+    const State at = moved(s.state(), u);
+    const Forces f = s.forces_at(at, Interaction::Precision::full);
+    VectorXd out = load_forces(s.loads(), at);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      out.segment<6>(6 * static_cast<Eigen::Index>(i)) +=
+          (Eigen::Matrix<double, 6, 1>() << f.force[i], f.torque[i]).finished();
+    // P' of the moved state: velocities f/m, constrained there.
+    State there = at;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto row = 6 * static_cast<Eigen::Index>(i);
+      const VectorXd v = out.segment<6>(row).cwiseQuotient(here.mass().segment<6>(row));
+      there.velocity.set(i, v.head<3>());
+      there.angular_velocity.set(i, v.tail<3>());
+    }
+    constrain(s.topology(), s.loads(), before_all_motion, 0, there);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto row = 6 * static_cast<Eigen::Index>(i);
+      out.segment<6>(row) << there.velocity[i], there.angular_velocity[i];
+      out.segment<6>(row) = out.segment<6>(row).cwiseProduct(here.mass().segment<6>(row)).eval();
+    }
+    return VectorXd(of->forces * out);
+  };
+  constexpr double h = 1e-5;
+  const VectorXd q = random_motion(of->mass.size(), 3), u = of->motions * q;
+  const VectorXd change = -(forces(h * u) - forces(-h * u)) / (2 * h);
+  EXPECT_LT((k * q - change).norm(), 1e-6 * change.norm());
 }
 
 }  // namespace UNIT

@@ -153,6 +153,11 @@ TEST(Links, BreakAtTheirStrengthAndTheAccountStaysClosed) {
   });
   EXPECT_EQ(static_cast<double>(stored.links_at(middle).size()), first.begun - static_cast<double>(broken));
   EXPECT_FALSE(stored.any_breaks());
+  // Links that broke are events. The memory has only those that hold: however many come and go, it stays small.
+  constexpr double head = 3 + 5, of_account = 3 + 4, link = 3 + 17;
+  EXPECT_EQ(static_cast<double>(s.memory().size()), head + of_account + link * (account.begun - account.events));
+  s.forget_events();
+  EXPECT_TRUE(s.term_events().empty());
 }
 
 // A link whose walls are too near pushes, and holds.
