@@ -50,13 +50,15 @@ def device(case):
     same_columns(case.base.log, out.log, 1e-4, rounding=1e-5, leave=WITHOUT_SCALE, floor=3e-6)
     if len(set(case.base.log["time_step_fs"])) == 1 or scene.source != "state":
         return
-    # Tubes that swing as they collide, without rows on the way: both must go back equally far to divide their steps.
+    # Tubes that swing for some 300 steps and collide, without rows on the way: both must go back to the same step to
+    # divide those that follow.
     state = State(case.folder / scene["state"]["file"])
-    state.each(lambda r, q, v, w: (r, q, tuple(x + case.random.gauss(0, 0.1) for x in v), w)).write(
+    state.each(lambda r, q, v, w: ((4 * r[0], *r[1:]), q, tuple(x + case.random.gauss(0, 0.1) for x in v), w)).write(
         case.folder / "swinging.csv")
-    scene = scene.with_keys(state={"file": "swinging.csv"}, run={"log_every_ps": scene["run"]["duration_ps"]})
+    scene = scene.with_keys(state={"file": "swinging.csv"}, run={"duration_ps": 20, "log_every_ps": 20})
     logs = [case.run(scene, *options).log for options in ((), ("--device", "c++"))]
-    same_columns(*logs, 1e-4, rounding=1e-5, leave=WITHOUT_SCALE, floor=3e-6)
+    # Rounding of the contact grows as they part.
+    same_columns(*logs, 1e-2, only=("stretch_eV", "bend_eV", "twist_eV", "kinetic_eV"), last=True)
 
 
 @transformation
