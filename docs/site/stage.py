@@ -23,7 +23,7 @@ beside_docs = ["README.md", "CHANGELOG.md", "THIRD_PARTY.md", "calibrate/README.
                "mdem/lammps/README.md", "data/**/README.md"]
 contents = [
     ("Learn", ["tutorials/rope", "tutorials/tube", "tutorials/twist-to-failure", "tutorials/phase-diagram", "tutorials/python",
-               "tutorials/cluster", "guide", "gallery"]),
+               "tutorials/atoms", "tutorials/cluster", "guide", "gallery"]),
     ("How to", ["how-to/install", "how-to/view", "how-to/resume", "how-to/campaign", "how-to/*"]),
     ("Reference", ["reference/commands", "reference/scene", "reference/tables/*", "outputs", "limits", "faults", "reference/messages",
                    "reference/library", "glossary"]),

@@ -311,8 +311,8 @@ class Reader {
     if (set_.anharmonic) set_.anharmonic->coupling = coupling;
     quantity(t, "poisson", "1", Bounds::range(-1, 1));
     quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
-    quantity(t, "sublattice_turn", "rad", Bounds::range(-1, 1));
-    quantity(t, "sublattice_rise", "nm", Bounds::range(-0.1, 0.1));
+    if (t.has("sublattice_turn")) quantity(t, "sublattice_turn", "rad", Bounds::range(-1, 1));
+    if (t.has("sublattice_rise")) quantity(t, "sublattice_rise", "nm", Bounds::range(-0.1, 0.1));
   }
 
   void read_validity(const TomlTable& t) {

@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double still_there = 0.95;   // of the largest value
+constexpr double still_there = 0.95;   // relative to the largest value
 constexpr double twisted_from = 0.01;  // nN nm
 constexpr double bent_share = 0.05;    // of the bending moment, above which the torque of a bent rope is no noise
 constexpr double bent_beside = 0.2;    // torque over the bending moment; and that over tension times radius

@@ -45,7 +45,7 @@ class AtomsTest(FolderTest):
         atoms = ropewalk.atoms(frame)
         self.assertEqual(atoms.time_ps, frame.time_ps)
         per_length = ropewalk.ParameterSet("cnt-5-5-tersoff")["tube.atoms_per_length"].value
-        self.assertAlmostEqual(len(atoms) / (per_length * frame.element_length_nm * len(frame.flat)), 1, delta=0.01)
+        self.assertAlmostEqual(len(atoms) / (per_length * frame.element_length_nm * len(frame.flat)), 1, delta=0.02)
         for tube, element in ((0, 1), (6, 3)):
             of_it = atoms.position[(atoms.tube == tube) & (atoms.element == element)]
             self.assertLess(np.linalg.norm(of_it.mean(axis=0) - frame.position[tube, element]), 0.08)
@@ -87,7 +87,7 @@ class AtomsTest(FolderTest):
                 yield image
 
         coarse = ropewalk.coarsen(images(), "coarse")
-        self.assertLessEqual(max(most), 2)
+        self.assertLessEqual(max(most), 3)  # the one that is read, the one before, and this
         self.assertEqual(len(coarse.frames), len(self.run_.frames))
         for frame, wanted in zip(coarse.frames, self.run_.frames):
             self.assertEqual(frame.time_ps, wanted.time_ps)

@@ -77,14 +77,21 @@ def _universe(first: Atoms, frames: Iterable[Atoms]) -> Any:
         places.append((10 * atoms.position).astype(np.float32))
         times.append(atoms.time_ps)
     apart = times[1] - times[0] if len(times) > 1 else 1.0
-    universe.load_new(np.array(places), order="fac", dt=apart)
-
-    def in_time(timestep: Any) -> Any:
-        timestep.data["time"] = times[timestep.frame]
-        return timestep
-
-    universe.trajectory.add_transformations(in_time)
+    universe.load_new(np.array(places), format=_timed_reader(times), order="fac", dt=apart)
     return universe
+
+
+def _timed_reader(times: list[float]) -> Any:
+    """The reader of arrays of MDAnalysis, with times that need not be evenly apart."""
+    base = import_module("MDAnalysis.coordinates.memory").MemoryReader
+
+    class TimedReader(base):  # type: ignore[misc,valid-type]
+        def _read_next_timestep(self, ts: Any = None) -> Any:
+            found = super()._read_next_timestep(ts)
+            found.time = times[found.frame]
+            return found
+
+    return TimedReader
 
 
 def atoms(

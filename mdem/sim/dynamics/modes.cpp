@@ -48,14 +48,22 @@ struct Quadratic {
   }
 };
 
-// What Spectra asks for: (A - shift)^-1 of the displacements and the velocities. Neutral motions span a space that
-// A does not leave: what is left of the others without their parts in it has all other eigenvalues.
+// What Spectra asks for: (A - shift)^-1 of the displacements and the velocities. Displacements along neutral
+// motions, and velocities along those that meet no damping either, span a space that A does not leave: what is left
+// of the others without their parts in it has all other eigenvalues.
 class Inverse {
  public:
   using Scalar = double;
 
   Inverse(const Quadratic& q, const Reduction& r, const ModeSearch& search)
-      : q_(q), r_(r), shift_(search.shift), without_neutral_(search.without_neutral), lu_(q.at(search.shift)) {}
+      : q_(q), shift_(search.shift), lu_(q.at(search.shift)) {
+    if (!search.without_neutral) return;
+    const double fastest = q.damping.nonZeros() > 0 ? 1e-6 * q.damping.norm() / q.mass.minCoeff() : 0;
+    for (const VectorXd& motion : r.neutral) {
+      places_.push_back(motion);
+      if (std::sqrt(q.kinetic_norm(VectorXd(q.damping * motion), -1)) <= fastest) speeds_.push_back(motion);
+    }
+  }
   Eigen::Index rows() const { return 2 * q_.size(); }
   Eigen::Index cols() const { return rows(); }
   void set_shift(double) {}
@@ -66,17 +74,14 @@ class Inverse {
     const VectorXd inertial = q_.mass.cwiseProduct(b + shift_ * a);
     u = -lu_.solve(inertial + q_.damping * a);
     v = a + shift_ * u;
-    if (!without_neutral_) return;
-    for (const auto* all : {&r_.spins, &r_.wholes})
-      for (const VectorXd& still : *all) u -= still.dot(q_.mass.cwiseProduct(u)) * still;
-    for (const VectorXd& still : r_.wholes) v -= still.dot(q_.mass.cwiseProduct(v)) * still;
+    for (const VectorXd& motion : places_) u -= motion.dot(q_.mass.cwiseProduct(u)) * motion;
+    for (const VectorXd& motion : speeds_) v -= motion.dot(q_.mass.cwiseProduct(v)) * motion;
   }
 
  private:
   const Quadratic& q_;
-  const Reduction& r_;
+  std::vector<VectorXd> places_, speeds_;  // that are left out
   double shift_;
-  bool without_neutral_;
   SlabLu lu_;
 };
 
@@ -108,14 +113,15 @@ Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSea
   const Eigen::Index wanted = std::min<Eigen::Index>(search.count, most);
   if (wanted < 1) throw std::runtime_error("nothing is free to move");
   Inverse inverse(q, reduction, search);
-  Spectra::GenEigsRealShiftSolver<Inverse> solver(inverse, wanted, std::min(most + 2, 2 * wanted + 40),
-                                                  search.shift);
+  Spectra::GenEigsRealShiftSolver<Inverse> solver(
+      inverse, wanted, std::min(most + 2, 2 * wanted + search.more_vectors), search.shift);
   solver.init();
-  const Eigen::Index found =
-      solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-11, Spectra::SortRule::LargestReal);
+  const Eigen::Index found = solver.compute(Spectra::SortRule::LargestMagn, search.restarts, search.tolerance,
+                                            Spectra::SortRule::LargestReal);
   Modes out;
   out.shift = search.shift;
   out.resolution = resolution_of(q, tangent, reduction);
+  if (found < 1 && search.may_find_none) return out;
   if (found < 1) throw std::runtime_error("Arnoldi's method finds no eigenvalue");
   const VectorXcd rates = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();

@@ -23,12 +23,11 @@ namespace ropewalk {
 
 // The motions that constraints allow, as coordinates q: u = motions q, in an order along the rope.
 struct Reduction {
-  Tangent::Matrix motions;    // column by column
-  Tangent::Matrix forces;     // row by row: the force on a coordinate, from those on all elements
-  Eigen::VectorXd mass;       // of each coordinate
-  Tangent::Matrix stiffness;  // of what the constraints bear
-  // Coordinates of motions that meet neither stiffness nor, the second ones, damping; of unit mass.
-  std::vector<Eigen::VectorXd> spins, wholes;
+  Tangent::Matrix motions;               // column by column
+  Tangent::Matrix forces;                // row by row: the force on a coordinate, from those on all elements
+  Eigen::VectorXd mass;                  // of each coordinate
+  Tangent::Matrix stiffness;             // of what the constraints bear
+  std::vector<Eigen::VectorXd> neutral;  // coordinates of motions that meet no stiffness, orthonormal by the masses
 };
 
 struct Mode {
@@ -41,8 +40,13 @@ struct Mode {
 struct ModeSearch {
   int count = 12;
   double shift = 0.05;  // 1/ps
-  // Motions that meet no stiffness (Reduction::spins, wholes) are left out of the search, and of the shapes.
+  // Motions that meet no stiffness (Reduction::neutral) are left out of the search, and of the shapes.
   bool without_neutral = false;
+  // Vectors of Arnoldi's method beyond twice the count, and how often it begins again. With few of them it finds
+  // what stands alone, and no error if there is nothing.
+  int more_vectors = 40, restarts = 300;
+  bool may_find_none = false;
+  double tolerance = 1e-11;  // of 1/(rate - shift)
 };
 
 struct Modes {

@@ -164,8 +164,8 @@ class Making {
       VectorXd q = momentum.cwiseQuotient(out.mass);
       return VectorXd(q / std::sqrt(q.dot(out.mass.cwiseProduct(q))));
     };
-    for (const VectorXd& u : allowed_.spins()) out.spins.push_back(coordinates(u));
-    for (const VectorXd& u : allowed_.wholes()) out.wholes.push_back(coordinates(u));
+    for (const auto& all : {allowed_.spins(), allowed_.wholes()})
+      for (const VectorXd& u : all) out.neutral.push_back(coordinates(u));
     return out;
   }
 
