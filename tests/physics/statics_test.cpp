@@ -134,6 +134,13 @@ TEST(Statics, TubeBetweenCouplesTwistsAsItsBonds) {
                 1e-7);
 }
 
+TEST(Statics, AFreeTubeWithoutForcesIsAtRest) {
+  Simulation s = Beam(10).make();
+  const Statics end = rest(s, {});
+  EXPECT_TRUE(end.relaxed.at_rest);
+  EXPECT_LT(end.newton_steps, 30);
+}
+
 // Straight to the last bit: no force acts sideways.
 Beam column(double part_of_buckling_load) {
   Beam b(31);

@@ -53,7 +53,6 @@ MAY_APPEND = {
     "calibrate/friction/sliding.cpp": FOLDER,
     "validate/cases/common/lammps_session.cpp": FOLDER,
     "mdem/commands/new.cpp": RESULT,
-    "mdem/commands/rest.cpp": RESULT,
     "mdem/commands/threshold.cpp": RESULT,
     "calibrate/verbs/friction.cpp": RESULT,
     "calibrate/verbs/show.cpp": RESULT,

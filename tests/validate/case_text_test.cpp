@@ -4,7 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <stdexcept>
+
+#include "io/files.hpp"
 #include "model/error.hpp"
+#include "scene/prepare.hpp"
+#include "scene/scene_toml.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -54,6 +60,21 @@ TEST(CaseText, NamesTheLineOfWhatItCannotPlace) {
   EXPECT_THAT(error_of(replaced("## Why", "Words\n\n## Why")), HasSubstr("case.md:1: has no title, or a text"));
   EXPECT_THAT(error_of(replaced("## Remarks", "## Remark")), HasSubstr("case.md:24: ## Remark: is not a section"));
   EXPECT_THAT(error_of(good + "## Why\n\nAgain.\n"), HasSubstr("case.md:29: ## Why: is not a section"));
+}
+
+// Without the values that the case writes there.
+TEST(CaseScenes, ArePreparedAsTheyAre) {
+  namespace fs = std::filesystem;
+  int scenes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(ROPEWALK_SOURCE_DIR "/validate/cases")) {
+    if (entry.path().filename() != "scene.toml") continue;
+    Scene scene = read_scene(entry.path().string());
+    EXPECT_GT(prepare(scene).topology.elements(), 0) << entry.path();
+    EXPECT_EQ(case_scene(entry.path().parent_path().filename().string()), read_file(entry.path().string()));
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 7);
+  EXPECT_THROW(case_scene("euler-buckling"), std::out_of_range);
 }
 
 }  // namespace UNIT

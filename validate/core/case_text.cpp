@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "model/error.hpp"
@@ -92,14 +93,21 @@ CaseText parse_case_text(const std::string& path, const std::string& text) {
   return t;
 }
 
-RegisteredText::RegisteredText(const char* path, const char* text) {
-  registered_texts().emplace_back(path, text);
+RegisteredText::RegisteredText(const char* path, const char* text) { registered_texts().emplace_back(path, text); }
+
+std::string case_scene(const std::string& name) {
+  for (const auto& [path, text] : registered_texts()) {
+    const std::filesystem::path file(path);
+    if (file.filename() == "scene.toml" && file.parent_path().filename() == name) return text;
+  }
+  throw std::out_of_range("the case " + name + " has no scene.toml");
 }
 
 const CaseText* find_case_text(const std::string& name) {
   static const std::vector<CaseText> texts = [] {
     std::vector<CaseText> parsed;
-    for (const auto& [path, text] : registered_texts()) parsed.push_back(parse_case_text(path, text));
+    for (const auto& [path, text] : registered_texts())
+      if (std::filesystem::path(path).filename() == "case.md") parsed.push_back(parse_case_text(path, text));
     return parsed;
   }();
   const auto at = std::find_if(texts.begin(), texts.end(), [&](const CaseText& t) { return t.name == name; });

@@ -1,4 +1,5 @@
-// The prose of a case: `case.md` in its folder, GROUP/NAME/. The build puts these files into the program.
+// The prose of a case, `case.md` in its folder GROUP/NAME/, and its scene, `scene.toml`. The build puts these files into
+// the program.
 //
 //   # Title
 //   ## Why
@@ -25,10 +26,13 @@ struct CaseText {
 // `path`: ".../GROUP/NAME/case.md". Throws InputError with the line of what is wrong.
 CaseText parse_case_text(const std::string& path, const std::string& text);
 
-// Registers a text before main() begins. validate/embed_texts.cmake writes one for each case.md.
+// Registers a text before main() begins. validate/embed_texts.cmake writes one for each case.md and scene.toml.
 struct RegisteredText {
   RegisteredText(const char* path, const char* text);
 };
+
+// The registered scene.toml of a case. Throws std::out_of_range if it has none.
+std::string case_scene(const std::string& name);
 
 // The registered text of a case; null if there is none.
 const CaseText* find_case_text(const std::string& name);

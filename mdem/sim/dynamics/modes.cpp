@@ -113,14 +113,15 @@ Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSea
   const Eigen::Index wanted = std::min<Eigen::Index>(search.count, most);
   if (wanted < 1) throw std::runtime_error("nothing is free to move");
   Inverse inverse(q, reduction, search);
-  Spectra::GenEigsRealShiftSolver<Inverse> solver(inverse, wanted, std::min(most + 2, 2 * wanted + 40),
-                                                  search.shift);
+  Spectra::GenEigsRealShiftSolver<Inverse> solver(
+      inverse, wanted, std::min(most + 2, 2 * wanted + search.more_vectors), search.shift);
   solver.init();
-  const Eigen::Index found =
-      solver.compute(Spectra::SortRule::LargestMagn, 300, 1e-11, Spectra::SortRule::LargestReal);
+  const Eigen::Index found = solver.compute(Spectra::SortRule::LargestMagn, search.restarts, search.tolerance,
+                                            Spectra::SortRule::LargestReal);
   Modes out;
   out.shift = search.shift;
   out.resolution = resolution_of(q, tangent, reduction);
+  if (found < 1 && search.may_find_none) return out;
   if (found < 1) throw std::runtime_error("Arnoldi's method finds no eigenvalue");
   const VectorXcd rates = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();

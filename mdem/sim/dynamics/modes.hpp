@@ -42,6 +42,11 @@ struct ModeSearch {
   double shift = 0.05;  // 1/ps
   // Motions that meet no stiffness (Reduction::neutral) are left out of the search, and of the shapes.
   bool without_neutral = false;
+  // Vectors of Arnoldi's method beyond twice the count, and how often it begins again. With few of them it finds
+  // what stands alone, and no error if there is nothing.
+  int more_vectors = 40, restarts = 300;
+  bool may_find_none = false;
+  double tolerance = 1e-11;  // of 1/(rate - shift)
 };
 
 struct Modes {

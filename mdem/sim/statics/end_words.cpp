@@ -43,9 +43,9 @@ EndWords end_words(const Simulation& s, const Statics& end, bool by_fire, bool o
   if (end.end == Statics::End::interrupted) return {"it was stopped", ""};
   if (s.interaction().law && s.topology().tubes() > 1 && s.forces().energy.vdw == 0)
     return {"no two tubes touch", "start from tubes that touch"};
-  return {fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force,
-                      end.newton_steps),
-          ""};
+  return {
+      fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force, end.newton_steps),
+      ""};
 }
 
 }  // namespace ropewalk

@@ -11,6 +11,15 @@
 #include "sim/statics/stiffness.hpp"
 
 namespace ropewalk {
+namespace {
+
+// Rates next to zero; and those that are so far from it that the many slow decays of a rope are nearer to the first
+// shift.
+constexpr double rate_tolerance = 1e-6;  // of 1/(rate - shift): errors of 5e-5/ns next to zero
+constexpr ModeSearch slow_motions{12, 0.05, true, 40, 300, false, rate_tolerance},
+    fast_motions{1, 0.5, true, 20, 1, true, rate_tolerance};
+
+}  // namespace
 
 std::optional<Stability> stability_of(const Simulation& s, double most_operations, std::string& why) {
   if (const std::string term = term_without_tangent(s); !term.empty())
@@ -20,17 +29,20 @@ std::optional<Stability> stability_of(const Simulation& s, double most_operation
   const std::optional<Reduction> reduction = reduction_of(s, why);
   if (!reduction) return std::nullopt;
   try {
-    ModeSearch search;
-    search.without_neutral = true;
-    const Modes found = modes_of(tangent_by_blocks(s), *reduction, search);
+    const Tangent tangent = tangent_by_blocks(s);
+    const Modes found = modes_of(tangent, *reduction, slow_motions);
     Stability out;
     out.neutral = neutral_below(found);
     bool any = false;
-    for (const Mode& mode : found.modes) {
-      if (std::abs(mode.rate) < out.neutral) continue;
-      if (!any || mode.rate.real() > out.growth) out.growth = mode.rate.real();
-      any = true;
-    }
+    const auto look = [&](const std::vector<Mode>& modes, double least) {
+      for (const Mode& mode : modes) {
+        if (std::abs(mode.rate) < out.neutral || mode.rate.real() < least) continue;
+        if (!any || mode.rate.real() > out.growth) out.growth = mode.rate.real();
+        any = true;
+      }
+    };
+    look(found.modes, -std::numeric_limits<double>::infinity());
+    if (out.stable()) look(modes_of(tangent, *reduction, fast_motions).modes, slow_motions.shift);
     return out;
   } catch (const std::runtime_error& e) {
     return why = e.what(), std::nullopt;

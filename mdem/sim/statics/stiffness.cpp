@@ -41,6 +41,7 @@ const BlockMatrix& StiffnessMaker::make(const Simulation& s) {
       add_line_contact(s, *line);
     else
       add_contact(s);
+    drop_what_is_not_reached();
   }
   add_bonds(s);
   add_terms(s);
@@ -59,6 +60,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
   k_.begin.assign(1, 0);
   k_.column.clear();
   touches_.clear();
+  bonded_.clear();
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
       const bool bonded = i + 1 < topology.tube_begin[t + 1];
@@ -66,6 +68,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
       if (bonded) {
         k_.column.push_back(i + 1);
         touches_.push_back(false);
+        bonded_.push_back(true);
       }
       if (reach > 0)
         s.list().for_neighbours(i, [&](int j) {
@@ -75,6 +78,7 @@ void StiffnessMaker::find_pattern(const Simulation& s) {
           } else {
             k_.column.push_back(j);
             touches_.push_back(true);
+            bonded_.push_back(false);
           }
         });
       k_.begin.push_back(static_cast<int>(k_.column.size()));
@@ -115,9 +119,9 @@ void StiffnessMaker::add_line_contact(const Simulation& s, const LineLaw& law) {
       const auto b = static_cast<std::size_t>(j);
       const auto types = static_cast<std::size_t>(type_[a] * law.types() + type_[b]);
       const Vector3 separation = position[b] - position[a];
-      add_line_stiffness(nodes_[types], separation.data(), axis_[a].data(), axis_[b].data(), scratch[types],
-                         k_.diagonal[a].data(), k_.diagonal[b].data(),
-                         k_.block[static_cast<std::size_t>(at)].data());
+      touches_[static_cast<std::size_t>(at)] = add_line_stiffness(
+          nodes_[types], separation.data(), axis_[a].data(), axis_[b].data(), scratch[types], k_.diagonal[a].data(),
+          k_.diagonal[b].data(), k_.block[static_cast<std::size_t>(at)].data());
     }
   }
 }
@@ -132,7 +136,9 @@ void StiffnessMaker::add_contact(const Simulation& s) {
       const auto b = static_cast<std::size_t>(j);
       const TypePair types{type_[a], type_[b]};
       const Pose pose_i = pose_of(s.state(), i), pose_j = pose_of(s.state(), j);
-      if (!law.reaches(types, pose_j.position - pose_i.position, axis_[a], axis_[b])) continue;
+      touches_[static_cast<std::size_t>(at)] =
+          law.reaches(types, pose_j.position - pose_i.position, axis_[a], axis_[b]);
+      if (!touches_[static_cast<std::size_t>(at)]) continue;
       const auto forces = [&](const Pose& p, const Pose& q) {
         const PairForce f =
             law.force(types, q.position - p.position, axis_of(p.orientation), axis_of(q.orientation));
@@ -144,6 +150,22 @@ void StiffnessMaker::add_contact(const Simulation& s) {
       k_.block[static_cast<std::size_t>(at)] += k.topRightCorner<6, 6>();
     }
   }
+}
+
+// Pairs whose points are too far apart cost as much in a product as others.
+void StiffnessMaker::drop_what_is_not_reached() {
+  std::size_t kept = 0, from = 0;
+  for (std::size_t row = 1; row < k_.begin.size(); ++row) {
+    for (const auto to = static_cast<std::size_t>(k_.begin[row]); from < to; ++from) {
+      if (!touches_[from] && !bonded_[from]) continue;
+      k_.column[kept] = k_.column[from];
+      k_.block[kept] = k_.block[from];
+      ++kept;
+    }
+    k_.begin[row] = static_cast<int>(kept);
+  }
+  k_.column.resize(kept);
+  k_.block.resize(kept);
 }
 
 void StiffnessMaker::add_terms(const Simulation& s) {

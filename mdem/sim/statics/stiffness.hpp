@@ -41,11 +41,12 @@ class StiffnessMaker {
   void add_bonds(const Simulation& s);
   void add_line_contact(const Simulation& s, const LineLaw& law);
   void add_contact(const Simulation& s);
+  void drop_what_is_not_reached();
   void add_terms(const Simulation& s);
 
   BlockMatrix k_;
-  std::vector<char> touches_;         // of each block above the diagonal: the pair is in the list
-  std::vector<LineNodePairs> nodes_;  // of tube types i, j at i * types + j
+  std::vector<char> touches_, bonded_;  // of each block above the diagonal: the pair is near; has a bond
+  std::vector<LineNodePairs> nodes_;    // of tube types i, j at i * types + j
   std::vector<Vector3> axis_;
   std::vector<int> type_;  // of each element
 };

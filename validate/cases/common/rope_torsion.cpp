@@ -95,32 +95,14 @@ CaseResult run_rope_torsion(const CaseContext& context, Length kept) {
     }
   }
   result.figures.push_back(figure);
-  result.remarks.push_back(
-      "Three parts of the energy count: the bonds on helices, the cohesion of unequal tubes that clamps keep "
-      "equally "
-      "long, and the crowding of the twisted lattice. Without the crowding the torque of 91 tubes would be 6 % too "
-      "small at 10° and held length, and 12 % where the length is free; without the cohesion the initial stiffness "
-      "1 % "
-      "too large.");
-  result.remarks.push_back(
-      "Bonds count twist per element, not per stretched length: a twisted tube does not lengthen by itself, as a "
-      "rod would whose twist per length falls where it is stretched.");
   return result;
 }
 
 Case rope_torsion_case() {
   Case c;
-  c.group = Case::Group::theory;
   c.tier = Case::Tier::full;
   c.law = Case::Law::none;
   c.sets = {"cnt-10-10-tersoff", "cnt-10-10-paper"};
-  c.oracle =
-      "`u = u_bonds(s - 1, phi cos θ, phi sin θ) - Gamma/s + crowding`, `s = sqrt(λ² + ρ²phi²)`, at the rest radii "
-      "`ρ`; `M = dU/dphi`, `T = dU/dλ`. Crowding is the energy of a flat lattice on a surface of the curvature `3 "
-      "phi²`. Pressure on the core: `E (phi R)⁴/8` of the tension, less `3 Y (phi R)²/16` of the crowding.";
-  c.literature =
-      "G. M. Grason, Rev. Mod. Phys. 87, 401 (2015), DOI 10.1103/RevModPhys.87.401; I. R. Bruss, G. M. Grason, "
-      "PNAS 109, 10781 (2012), DOI 10.1073/pnas.1205606109";
   return c;
 }
 

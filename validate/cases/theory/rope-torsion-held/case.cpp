@@ -1,0 +1,19 @@
+// A rope turned at fixed length.
+#include "cases/common/rope_torsion.hpp"
+
+namespace ropewalk::validate::rope_torsion_held {
+namespace {
+
+const RegisteredCase registered([] {
+  Case c = rope_torsion_case();
+  c.name = "rope-torsion-held";
+  c.order = 140;
+  c.run = [](const CaseContext& context) { return run_rope_torsion(context, RopeInMachine::Length::held); };
+  c.turns_red = {{wrong_stiffnesses(1.1),
+                  {"torque per tube, 7 tubes of (10,10), 0.5°", "tension per tube, 37 tubes of (10,10), 10°",
+                   "specific energy, 37 tubes of (10,10)"}}};
+  return c;
+});
+
+}  // namespace
+}  // namespace ropewalk::validate::rope_torsion_held
