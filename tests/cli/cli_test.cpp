@@ -83,7 +83,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
                   "--threads: many is not a whole number; see ropewalk run --help"},
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
-        std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
+        std::pair{"check d --accuracy --stretch 0", "--stretch: 0 must be positive"},
         std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
@@ -590,8 +590,6 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
   EXPECT_NE(report.find("has a standard deviation of 0.73 % of the well"), std::string::npos);
   EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of this size have random registries"),
             std::string::npos);
-  const Outcome plan = run("plan s.toml --error 5%");
-  EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
   // Runs of 0.1 have no grade in their manifest.
   std::string manifest = slurp(dir / "d/manifest.json");
   const std::size_t at = manifest.find("  \"grade\"");

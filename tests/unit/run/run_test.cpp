@@ -153,7 +153,7 @@ TEST_F(Stops, WithLinksFrictionAndBrokenTubes) {
 
 TEST_F(Stops, WithoutEventsThatWereTakenAway) {
   RunSettings first;
-  first.steps = 200;
+  first.steps = 50;
   run("part", linked, first);
   fs::remove(dir_ / "part/events.csv");
   Follower follower;
