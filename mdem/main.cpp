@@ -610,24 +610,9 @@ void add_bench(CLI::App& app, Verbs& v) {
       ->check(thread_range());
   add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
   add_device(c, v.bench.device, "none");
-  CLI::Option* lammps = c->add_option("--lammps", v.bench.lammps,
-                                      "Time lmp-ropewalk on so many ranks against as many threads, by turns")
-                            ->check(thread_range());
-  c->add_flag("--plain", v.bench.plain, "With --lammps: its plain forms, pair by pair")->needs(lammps);
-  for (const char* other : {"--after", "--threads", "--instructions", "--device"})
-    lammps->excludes(c->get_option(other));
-  CLI::Option* parts =
-      c->add_option(
-           "--parts", v.bench.parts,
-           "Cut the scene into 1, 2, 4 ... up to so many parts, as ranks of LAMMPS have them, and time the "
-           "forces of each part alone")
-          ->check(whole_number(1, 4096));
-  for (const char* other : {"--after", "--threads", "--instructions", "--device", "--lammps"})
-    parts->excludes(c->get_option(other));
   c->add_flag("--json", v.bench.json, "JSON");
   c->callback([&v] {
-    wait_briefly(v.argv,
-                 std::max(v.bench.lammps, *std::max_element(v.bench.threads.begin(), v.bench.threads.end())));
+    wait_briefly(v.argv, *std::max_element(v.bench.threads.begin(), v.bench.threads.end()));
     v.code = bench_command(v.bench);
   });
 }

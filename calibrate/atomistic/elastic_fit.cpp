@@ -249,7 +249,7 @@ std::vector<EnergyPoint> points_within(const std::vector<AtomisticRow*>& rows, c
 
 // The bounded fit in energy, strain and twist of the minimum, and the Taylor coefficients from second order on.
 struct TaylorFit {
-  std::vector<Power> powers;  // of parameter 3 + k
+  std::vector<Power> powers;  // power k belongs to parameter 3 + k
   FitResult fit;
   StretchTwistWindow window;
 
@@ -259,7 +259,7 @@ struct TaylorFit {
       if (powers[k].u == i && powers[k].v == j) return 3 + k;
     return 0;
   }
-  // In eV and nm; `times`: a factor.
+  // Energy terms in eV and nm; `times` is a factor.
   Measured term(int i, int j, double times = 1) const {
     const std::size_t at = place(i, j);
     if (at == 0) return {};

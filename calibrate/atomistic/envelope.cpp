@@ -28,7 +28,7 @@ constexpr double rule_error = 0.2;  // relative, between tubes and potentials
 constexpr double seed_error = 0.03;  // relative: scatter of an instability with other noise or steps
 
 constexpr double specimen_length = 12;                // nm
-constexpr double first_step = 0.4, step_size = 0.04;  // of the rule
+constexpr double first_step = 0.4, step_size = 0.04;  // arguments of the rule
 constexpr double give_way =
     0.9;  // of the largest work of a step so far: below it moment, torque or force are falling
 
@@ -54,7 +54,7 @@ double first_crossing(double a, double b, double limit) {
 
 // A kind of loading in increments.
 struct Loading {
-  std::string name;             // of the run and the rows
+  std::string name;             // name of the run and of its rows
   double rule;                  // magnitude at the limit of the scaling rule
   double last_step;             // relative to the rule; the search ends there
   std::string variables, move;  // LAMMPS: move goes from v_q0 to v_q

@@ -160,7 +160,7 @@ PullFit fit_pull(std::vector<AtomisticRow>& table, const Anharmonic& law, double
   std::vector<AtomisticRow> rows;
   for (const AtomisticRow& row : table)
     if (row.kind == "pull") rows.push_back(row);
-  constexpr double least = 0.02;  // of strain beyond the window
+  constexpr double least = 0.02;  // smallest strain beyond the window
   if (rows.size() < stencil + 1 || rows.back().strain < law.max_strain + least) return {};
   const double twist = rows.front().twist - natural_twist;
   PullFit out;

@@ -41,8 +41,8 @@ RelaxedTube relax_tube(RunContext& run);
 
 // Cells at all pairs of these strains and shears.
 struct CellGrid {
-  std::string name;                    // of the LAMMPS run and of the rows
-  std::vector<double> strains;         // in rising order
+  std::string name;                    // name of the LAMMPS run and of its rows
+  std::vector<double> strains;         // ascending
   double largest_shear = 0;            // radius times twist
   std::vector<double> parts_of_shear;  // the nearest twists that the lattice has
 };

@@ -40,7 +40,7 @@ struct Measured {
 
 // The calibration refuses chiralities beyond these limits before LAMMPS starts.
 inline constexpr double smallest_diameter = 0.3;  // nm: below it atoms across the tube are within reach of bonds
-inline constexpr int max_atoms = 20000;           // of a cell: a minute each
+inline constexpr int max_atoms = 20000;           // atoms of a cell; larger cells take over a minute each
 
 // One relaxed configuration, a row of the table NAME-stiffness.csv.
 struct AtomisticRow {

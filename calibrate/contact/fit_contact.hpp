@@ -24,8 +24,8 @@ struct ContactPoint {
 struct LineFit {
   LineDensity density;
   FitResult fit;                     // parameters K, s, c, p, q in this order
-  Well parallel, crossed;            // of the integral; crossed at 90 degrees
-  Well line_parallel, line_crossed;  // of the fitted density
+  Well parallel, crossed;            // minima of the integral; crossed at 90 degrees
+  Well line_parallel, line_crossed;  // minima of the fitted density
   double error = 0;                  // largest |fit - integral| of parallel and crossed over the well, from
                                      // 0.05 nm inside of the minimum outwards
   std::vector<ContactPoint> u, parallel_curve, crossed_curve;
@@ -48,12 +48,12 @@ UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<doubl
 
 // The published form (11 free parameters: epsilon A, epsilon B, alpha, beta, C1..C5, C_gamma, delta) for elements
 // of the given length, to the integrated energies of parallel rows and crossed tubes.
-inline constexpr const char* paper_parameters[] = {"A",  "B",  "alpha", "beta",    "C1",   "C2",
-                                                   "C3", "C4", "C5",    "C_gamma", "delta"};  // in the fit's order
+inline constexpr const char* paper_parameters[] = {
+    "A", "B", "alpha", "beta", "C1", "C2", "C3", "C4", "C5", "C_gamma", "delta"};  // the order of the fit
 struct PaperFit {
   PaperContact law;
   FitResult fit;
-  Well parallel, crossed;  // of the fitted law, rows of elements
+  Well parallel, crossed;  // minima of the fitted law between rows of elements
   double error = 0;        // as LineFit::error
   std::vector<ContactPoint> points;
 };

@@ -15,7 +15,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr std::size_t chebyshev_order = 96;  // of the Chebyshev series
+constexpr std::size_t chebyshev_order = 96;  // terms of the Chebyshev series
 
 // Distances R above `from` at which E' has a kink or ends: the two circles then touch at the cutoff.
 std::vector<double> parts(const AtomLaw& law, const Shell& i, const Shell& j, double from) {

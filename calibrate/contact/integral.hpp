@@ -33,7 +33,7 @@ class PairIntegral {
   AtomLaw law_;
   Shell i_, j_;
   double contact_;
-  std::vector<double> edges_;                // of the parts, in R
+  std::vector<double> edges_;                // limits of the parts in R
   std::vector<std::vector<double>> series_;  // Chebyshev coefficients of E' h^8 for each part
 };
 

@@ -43,7 +43,7 @@ class LineTargets {
   void add_nodes(double end);
 
   std::vector<double> distance_, parallel_, crossed_;
-  std::vector<double> weight_parallel_, weight_crossed_;  // of the residuals
+  std::vector<double> weight_parallel_, weight_crossed_;  // weights of the residuals
   std::vector<double> node_, node_crossed_;               // nodes in rho and their weights in X
   std::vector<double> node_parallel_;                     // weights in E, a row for each distance
 };

@@ -41,7 +41,7 @@ struct FitResult {
   enum class Verdict { converged, at_bound, disagreement, limit_reached, nothing_finite };
   Verdict verdict = Verdict::nothing_finite;
   std::string message;                 // one line for a person: the verdict and what to do
-  std::vector<double> value;           // of all parameters, in their order
+  std::vector<double> value;           // all parameters, in their order
   std::vector<double> standard_error;  // 0 for a fixed parameter, NaN for one that the data do not determine
   // Correlation matrix of the parameters' errors. A parameter that is fixed, or that the data do not determine, has
   // 1 on the diagonal and 0 elsewhere.
@@ -52,7 +52,7 @@ struct FitResult {
   double rms = 0;      // sqrt(chi2 / number of residuals)
   double largest = 0;  // |residual|
   int evaluations = 0, not_finite = 0;
-  double condition = 0;  // of the scaled J^T J
+  double condition = 0;  // condition number of the scaled J^T J
   bool usable() const { return verdict == Verdict::converged || verdict == Verdict::at_bound; }
 };
 

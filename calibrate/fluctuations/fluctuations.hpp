@@ -40,8 +40,8 @@ struct RodStiffness {
 
 struct Fluctuation {
   std::vector<RodStiffness> windows;
-  RodStiffness rod;        // from the difference of the longest and the shortest window
-  double static_part = 0;  // of the variance of a bond, the largest of bends and twist
+  RodStiffness rod;        // difference of the longest and the shortest window
+  double static_part = 0;  // fraction of a bond's variance, the largest of bends and twist
   long frames = 0, bonds = 0;
   // Whether stiffnesses of all windows agree with those of `rod` within three standard errors.
   bool local = false;
@@ -63,7 +63,7 @@ class FluctuationSums {
  private:
   double element_length_;
   long frames_ = 0;
-  std::vector<int> bonds_;           // of each chain
+  std::vector<int> bonds_;           // number of bonds of each chain
   std::vector<BondMotion> motions_;  // frame by frame, chain by chain
 };
 

@@ -38,13 +38,13 @@ class RigidPair {
   // The distance (nm) near `start` at which all of b is neither pulled nor pushed.
   double free_distance(const Register& at, double start) const;
 
-  double length() const { return length_; }  // of b, nm
+  double length() const { return length_; }  // length of b, nm
   double radius_a() const { return radius_a_; }
   double radius_b() const { return radius_b_; }
 
  private:
   AtomLaw law_;
-  std::vector<Vector3> a_, b_;  // in rising z
+  std::vector<Vector3> a_, b_;  // ascending in z
   double radius_a_, radius_b_, length_ = 0, low_ = 0;
 };
 

@@ -46,7 +46,7 @@ Strength spin_strength(const RigidPair& pair, const std::vector<Register>& at, c
 // Strength of the longest contact where the tubes are pressed together.
 struct Pressed {
   double nearer = 0;  // nm, less than the distance at which they neither attract nor repel
-  Measured ratio;     // of the strength to that of free tubes
+  Measured ratio;     // strength over that of free tubes
   double force = 0;   // mean force that presses, eV/nm^2
 };
 std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<Register>& at,

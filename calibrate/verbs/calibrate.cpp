@@ -40,7 +40,7 @@ bool two_numbers(const std::string& text, T& a, T& b) {
 // The numbers of a calibration, for a person and for a script.
 struct Number {
   const char *words, *key, *unit;
-  Measured value;           // in the unit
+  Measured value;           // value in the unit
   const char* in_set = "";  // its key there, where potentials differ in it
 };
 

@@ -28,7 +28,7 @@ struct Calibration {
   LineFit line;
   PaperFit paper;
   std::optional<UniversalLine> universal;  // empty: no universal law for this sigma and cutoff
-  double universal_error = 0;              // of the universal law for this tube, as LineFit::error
+  double universal_error = 0;              // error of the universal law for this tube, as LineFit::error
   // Energies from sums over atoms of two parallel tubes at the well, over all turns and shifts, relative to the
   // surface integral. Empty without a cutoff.
   std::optional<RegistrySpread> registry;

@@ -45,8 +45,8 @@ struct FitModel {
   std::size_t residuals = 0;
   std::function<void(const std::vector<double>&, std::vector<double>&)> function;
   std::string weighting;   // meaning of a residual of 1
-  std::vector<int> lines;  // of the table, for each residual
-  std::string column;      // of the energies
+  std::vector<int> lines;  // line of the table for each residual
+  std::string column;      // column of the energies
   double largest = 0.1;    // residual that a set may have
 };
 

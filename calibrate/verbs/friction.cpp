@@ -91,7 +91,7 @@ Measured product(const Measured& x, const Measured& factor) {
   return {x.value * factor.value, std::hypot(x.standard_error * factor.value, x.value * factor.standard_error)};
 }
 
-// Of the corrugation along the axis, nm.
+// Period of the corrugation along the axis, nm.
 double corrugation(const Tube& t) {
   const double period = translational_period(t.set.chirality);
   return period < 0.5 ? period : graphene_lattice_constant;

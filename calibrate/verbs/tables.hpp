@@ -14,7 +14,7 @@ struct ContactRow {
   double angle = 0;     // rad
   double energy = 0;
   double fit = 0;  // NaN if the table has no such column
-  int line = 0;    // of the file
+  int line = 0;    // line of the file
 };
 
 std::vector<OutputColumn> contact_columns();

@@ -218,7 +218,8 @@ The state at that moment is in `failed-state.csv`. The message begins with the s
     text += """
 ## A relaxation that does not come to rest: exit code 4
 
-`run.max_steps` steps were not enough. The files are kept: start another scene from `final.csv`, or give more steps.
+The last line says what ended it and what to do: more steps (`run.max_steps`, or `ropewalk resume`), another solver, a smaller load, or dynamics.
+The files are kept: start another scene from `final.csv`.
 """
     return text
 
@@ -231,6 +232,7 @@ folders = {
     "observe": "what is measured on a state",
     "scene": "scenes: keys, readers, starting states",
     "io": "files",
+    "plan": "what is foreseen of a scene, and a run against a finer model",
     "run": "the loop around a simulation, and its directory",
     "report": "pages and pictures",
     "campaign": "many runs",

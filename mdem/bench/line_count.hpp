@@ -9,8 +9,8 @@ namespace ropewalk {
 struct RadialCount {
   double spans = 0;        // within reach
   double skipped = 0;      // out of reach at present
-  double nodes = 0;        // of the neighbours, within reach of the element
-  double evaluations = 0;  // of u, in all lanes of the vectors
+  double nodes = 0;        // nodes of the neighbours within reach of the element
+  double evaluations = 0;  // evaluations of u in all lanes of the vectors
   double useful = 0;       // those of nodes closer than the cutoff
 
   void add(const RadialCount& other, double share);

@@ -91,15 +91,7 @@ double operations_per_ns(const StepCost& c, const Interaction& in) {
   return per(c.radial.evaluations * radial_operations(in.precision), c.each.contact);
 }
 
-// The machine with as many threads as work on a scene of this size.
-Rates rates_of(const StepCost& c, const Prepared& prepared) {
-  const bool parallel = prepared.topology.elements() > static_cast<int>(parallel_from);
-  return {operations_per_ns(c, prepared.interaction), per(c.moved, c.each.wall),
-          machine_peak(parallel ? c.threads : 1, prepared.interaction.precision == Interaction::Precision::full)};
-}
-
-nlohmann::ordered_json json_of(const StepCost& c, const Rates& rates, const std::string& scene, long steps,
-                               const Prepared& prepared) {
+nlohmann::ordered_json json_of(const StepCost& c, const std::string& scene, long steps, const Prepared& prepared) {
   nlohmann::ordered_json out;
   out["scene"] = scene;
   out["elements"] = prepared.topology.elements();
@@ -126,13 +118,10 @@ nlohmann::ordered_json json_of(const StepCost& c, const Rates& rates, const std:
     out["radial_evaluations_per_element_step"] = c.radial.evaluations;
     out["radial_evaluations_useful"] = c.radial.useful;
     out["ns_per_radial_evaluation"] = per(c.each.contact, c.radial.evaluations);
-    out["contact_GFLOP_per_s"] = rates.operations;
-    out["contact_share_of_peak"] = rates.share_of_arithmetic();
+    out["contact_GFLOP_per_s"] = operations_per_ns(c, prepared.interaction);
   }
   out["moved_bytes_per_element_step"] = c.moved;
-  out["moved_GB_per_s"] = rates.moved;
-  out["moved_share_of_peak"] = rates.share_of_transfer();
-  out["machine"] = {{"peak_GFLOP_per_s", rates.peak.arithmetic}, {"peak_GB_per_s", rates.peak.transfer}};
+  out["moved_GB_per_s"] = per(c.moved, c.each.wall);
   out["bytes_per_element"] = c.bytes;
   out["list_bytes_per_element"] = c.list_bytes;
   out["peak_resident_MB"] = c.peak_bytes * 1e-6;

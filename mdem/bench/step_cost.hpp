@@ -5,7 +5,6 @@
 #include <string>
 
 #include "bench/line_count.hpp"
-#include "bench/machine_peak.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -25,7 +24,7 @@ struct StepCost {
   double skin = 0;                   // nm, of the last list
   double bytes = 0, list_bytes = 0;  // per element
   double moved = 0;                  // bytes per element and step, about the least
-  double peak_bytes = 0;             // of the program so far
+  double peak_bytes = 0;             // largest resident memory of the program so far
 };
 
 // After so much time (ps), on as many threads as OpenMP has now.
@@ -34,23 +33,11 @@ StepCost cost_of_step(const Scene& scene, const Prepared& prepared, double after
 // a/b, and 0 where b is 0.
 double per(double sum, double count);
 
-// The rates of a scene and those of the machine: GFLOP/s in contact and GB/s.
-struct Rates {
-  double operations = 0, moved = 0;
-  MachinePeak peak;
-
-  double share_of_arithmetic() const { return per(operations, peak.arithmetic); }
-  double share_of_transfer() const { return per(moved, peak.transfer); }
-};
-
-// `prepared`: the scene that was measured.
-Rates rates_of(const StepCost& cost, const Prepared& prepared);
-
 // Operations of the contact, 1e9/s.
 double operations_per_ns(const StepCost& cost, const Interaction& interaction);
 
 // `scene`: its name.
-nlohmann::ordered_json json_of(const StepCost& cost, const Rates& rates, const std::string& scene, long steps,
+nlohmann::ordered_json json_of(const StepCost& cost, const std::string& scene, long steps,
                                const Prepared& prepared);
 
 }  // namespace ropewalk

@@ -214,14 +214,11 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
     html += paragraph(escape_markup(
         "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
         "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
-        "8.987 EI/L on each tube on, however long one waits; in the time of the scene it passes where the growth, "
-        "summed over ramp and hold, has made half of the wave at the start as large as is asked. The winding is "
-        "the "
-        "turn of the rope over ML/EI, as its runs had it: 1 for tubes that are free of contact forces, less in a "
-        "rope "
-        "that stays packed. The turns of the helix are those of the one that grows fastest there. Glued tubes "
-        "would need EI + "
-        "EA<rho^2>/2 in place of EI."));
+        "8.987 EI/L on each tube on, if one waits long enough. In the time of the scene the threshold is where the "
+        "growth during ramp and hold has made half of the initial wave as large as the question asks. The winding "
+        "is the measured turn of the rope over ML/EI: 1 for tubes without contact forces, less in a rope that "
+        "stays packed. The turns of the helix are those of the helix that grows fastest. Glued tubes would need EI "
+        "+ EA⟨ρ²⟩/2 in place of EI."));
     html +=
         "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>point</th><th>infinite waiting "
         "time</th><th>glued "
@@ -240,11 +237,11 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
     if (svg.empty()) continue;
     const Series foreseen = by_theory(some, &PhasePoint::kinetic_theory);
     html += heading(escape_markup(name)) + "<figure>" + svg +
-            figures.caption(escape_markup(fmt::format(
-                "Each mark is a run: its form is the shape that the rope took, and it is filled where the run "
-                "passed. Lines are thresholds. By bisection the threshold {}{}.",
-                law_words(by_bisection(some)),
-                has_values(foreseen) ? "; by theory it " + law_words(foreseen) : std::string()))) +
+            figures.caption(escape_markup(
+                fmt::format("Each mark is a run, with the shape that the rope took; it is filled where the run "
+                            "passed. Lines are thresholds. By bisection the threshold {}{}.",
+                            law_words(by_bisection(some)),
+                            has_values(foreseen) ? "; by theory it " + law_words(foreseen) : std::string()))) +
             "</figure>\n";
   }
   if (!states.empty()) {

@@ -86,7 +86,7 @@ std::string roff_options(const CLI::App& app) {
 
 // --- Shells ---
 
-// In single quotes of a shell.
+// Quotes a word for a shell.
 std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
 // Within [...] of zsh's _arguments, in single quotes.

@@ -223,13 +223,8 @@ struct BenchArguments {
   std::vector<int> threads = {1};  // measured one after another
   bool list = false;
   bool json = false;
-  int lammps = 0;      // ranks of LAMMPS, measured against as many threads here; 0: only here
-  bool plain = false;  // LAMMPS by the plain forms
-  int parts = 0;       // number of parts to cut the scene into, each measured alone; 0: none
 };
 int bench_command(const BenchArguments& arguments);
-int bench_lammps(const BenchArguments& arguments);
-int bench_parts(const BenchArguments& arguments);
 int bench_device(const BenchArguments& arguments);
 
 struct ExportArguments {

@@ -83,7 +83,7 @@ std::string remedy_of(const std::string& source, const NumericErrors& whole, con
 
 // Results without an error beyond rounding are left out.
 void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters, const std::vector<LogRow>& log) {
-  constexpr double rounding = 1e-9, noise = 1e-5;  // of the largest value, and of 1 in its unit
+  constexpr double rounding = 1e-9, noise = 1e-5;  // relative to the largest value and to 1 in its unit
   const double mean_ps = whole.runs().mean_ps;
   fmt::print("{:<26} {:>14} {:>12} {:>11} {:>12} {:>11}   {}\n",
              mean_ps > 0 ? fmt::format("mean of the last {:.4g} ps", mean_ps) : "at the end", "value",

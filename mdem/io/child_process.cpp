@@ -103,7 +103,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-std::vector<std::string> one_thread_environment(bool single) {
+std::vector<std::string> one_thread_environment() {
   std::vector<std::string> variables;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -111,7 +111,6 @@ std::vector<std::string> one_thread_environment(bool single) {
   }
   variables.push_back("OMP_NUM_THREADS=1");
   // A single process needs no network; Open MPI starts in half the time without the search for one.
-  if (!single) return variables;
   for (const char* setting : {"OMPI_MCA_btl=self", "OMPI_MCA_pml=ob1"}) {
     const std::string name = std::string(setting).substr(0, std::string(setting).find('=') + 1);
     const auto same = [&](const std::string& text) { return text.rfind(name, 0) == 0; };
@@ -125,8 +124,7 @@ std::vector<std::string> one_thread_environment(bool single) {
 ChildEnd run_child(const std::vector<std::string>& arguments, const ChildOptions& options) {
   const double start = steady_seconds();
   ChildEnd end;
-  std::vector<std::string> argument_texts = arguments,
-                           environment_texts = one_thread_environment(!options.starts_ranks);
+  std::vector<std::string> argument_texts = arguments, environment_texts = one_thread_environment();
   const std::vector<char*> argument_list = pointers(argument_texts), environment = pointers(environment_texts);
 
   const auto failed = [&](int code) {

@@ -14,7 +14,6 @@ struct ChildOptions {
   std::vector<std::string> watched;  // files whose growth is a sign of life, beside the output
   double quiet_seconds = 120, max_seconds = 3600;
   long long most_bytes = 256LL << 20;  // in any file that it writes, and in output and watched files together
-  bool starts_ranks = false;           // as mpirun does: the settings of a single process are not for it
   std::function<bool()> interrupted;   // may be empty
 };
 

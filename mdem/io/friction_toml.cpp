@@ -128,7 +128,7 @@ PairFriction friction_of_text(const std::string& text, const std::string& path) 
 }
 
 Grade grade_of(const PairFriction& f) {
-  constexpr double known = 0.2, half = 0.5, nothing = 1;  // of the value, of the value, pN/nm
+  constexpr double known = 0.2, half = 0.5, nothing = 1;  // relative, relative, pN/nm
   Grade out;
   const auto look = [&](const char* key, const char* name, double smallest) {
     const auto q =

@@ -32,7 +32,7 @@ struct PairFriction {
   double elastic_slip = 0;                 // nm
   double drag = 0;                         // eV ps/nm^3
 
-  bool is_of(Chirality x, Chirality y) const;  // in either order
+  bool is_of(Chirality x, Chirality y) const;  // x and y in either order
 };
 
 // good: both strengths known to a fifth, or to 1 pN/nm, and the elastic slip to a fifth. unfit: a strength of which
@@ -44,7 +44,7 @@ PairFriction read_friction(const std::string& path);
 PairFriction friction_of_text(const std::string& text, const std::string& path);
 // Files friction-*.toml in the folders that are none of this program's: the functions below pass over them.
 std::vector<std::string> strange_friction_files(const std::vector<std::string>& folders);
-// From names, quantities and provenance, below `comment`.
+// The text of names, quantities and provenance, below `comment`.
 std::string friction_text(const PairFriction& friction, const std::string& comment);
 
 // The friction of this name: a file NAME or NAME.toml in one of the folders, a copy friction-K.toml there which has

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "ropewalk-errors-1";
-constexpr double rounding = 1e-9;  // of the value, and of 1 in its unit
+constexpr double rounding = 1e-9;  // relative to the value and to 1 in its unit
 constexpr double noise = 1e-5;     // likewise, of a value that is not linear in the parameters
 constexpr double unlike = 1e-3;    // of the value: a smaller effect is of no interest, linear or not
 

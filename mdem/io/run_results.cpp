@@ -8,9 +8,10 @@
 namespace ropewalk {
 namespace {
 
-constexpr double still_there = 0.95;   // of the largest value
+constexpr double still_there = 0.95;   // relative to the largest value
 constexpr double twisted_from = 0.01;  // nN nm
 constexpr double bent_share = 0.05;    // of the bending moment, above which the torque of a bent rope is no noise
+constexpr double bent_beside = 0.2;    // torque over the bending moment; and that over tension times radius
 constexpr double drawn_from = 1e-6;    // strain, from the start
 constexpr double drawn_again = 1e-3;   // strain, of a rope that was shorter before
 constexpr double stored_from = 1e-3;   // MJ/kg
@@ -32,10 +33,12 @@ double bending_moment(const LogRow& r) {
                    std::hypot(r["torque_lower_x_nN_nm"], r["torque_lower_y_nN_nm"]));
 }
 
-// Of a rope that is bent more than twisted.
+// Of a rope that is bent rather than twisted or pulled: clamps have some moment in any test.
 void add_bending(const std::vector<LogRow>& log, RunResults& r) {
   const double most = largest(log, log.size(), bending_moment);
-  if (!(most > twisted_from) || largest(log, log.size(), torque_of(log)) > most) return;
+  if (!(most > twisted_from) || largest(log, log.size(), torque_of(log)) > bent_beside * most) return;
+  const double pull = std::fmax(largest(log, "tension_upper_nN"), largest(log, "tension_lower_nN"));
+  if (pull * log.front()["radius_mid_nm"] * bent_beside > most) return;
   const auto at =
       std::find_if(log.begin(), log.end(), [&](const LogRow& row) { return bending_moment(row) == most; });
   r.bending_max = most;

@@ -20,7 +20,7 @@ class BondVBond : public LMP::Bond {
   void read_restart(FILE*) override {}
   double single(int type, double rsq, int i, int j, double& fforce) override;
 
-  const BondEnergy& own_energy() const { return sum_; }  // of this rank's bonds in the last evaluation
+  const BondEnergy& own_energy() const { return sum_; }  // energy of this rank's bonds in the last evaluation
 
  private:
   BondForce evaluate(int i, int j, const Vector3& separation) const;

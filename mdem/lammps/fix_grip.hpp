@@ -33,7 +33,7 @@ class FixGrip : public LMP::Fix {
   // An element that a load acts on.
   struct Place {
     int element;
-    int load;           // of the scene's loads
+    int load;           // index in the scene's loads
     std::size_t place;  // in Load::elements
     bool operator<(const Place& o) const { return element < o.element; }
   };
@@ -42,7 +42,7 @@ class FixGrip : public LMP::Fix {
 
   std::shared_ptr<const LammpsModel> model_;
   RankMessages ranks_;
-  std::vector<Place> places_;  // of all loads, by their elements
+  std::vector<Place> places_;  // places of all loads, sorted by elements
   // The scene of this rank's driven elements: its element k is atom atom_[k].
   std::vector<int> atom_;
   Topology topology_;
@@ -50,8 +50,8 @@ class FixGrip : public LMP::Fix {
   State state_;
   Forces forces_;
   std::vector<int> own_;                     // all elements of this state
-  std::vector<ConstraintImpulse> impulses_;  // of the last kick
-  std::vector<PointLoad> loads_;             // of the last evaluation
+  std::vector<ConstraintImpulse> impulses_;  // impulses of the last kick
+  std::vector<PointLoad> loads_;             // loads of the last evaluation
 };
 
 }  // namespace ropewalk::lammps

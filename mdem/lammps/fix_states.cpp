@@ -196,7 +196,7 @@ void FixStates::widen_box(const std::vector<StateRecord>& records) {
 
 // The ranks are a grid of bricks as yet.
 std::vector<int> FixStates::owners(const std::vector<StateRecord>& records) const {
-  std::array<std::vector<double>, 3> low;  // of the bricks along each axis
+  std::array<std::vector<double>, 3> low;  // lower limits of the bricks along each axis
   for (std::size_t k = 0; k < 3; ++k) {
     low[k].assign(static_cast<std::size_t>(comm->procgrid[k]), -std::numeric_limits<double>::infinity());
     low[k][static_cast<std::size_t>(comm->myloc[k])] = domain->sublo[k];

@@ -42,7 +42,7 @@ class FixStates : public LMP::Fix {
   StateInFile began_;
   bool has_begun_ = false;
   std::vector<double> memory_;
-  std::int64_t end_ = 0;  // of the last state in the file, in bytes
+  std::int64_t end_ = 0;  // end of the last state in the file, bytes
   LMP::bigint written_ = -1;
 };
 

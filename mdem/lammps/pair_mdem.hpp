@@ -32,7 +32,7 @@ class PairMdem : public LMP::Pair {
   std::string law_;
   std::shared_ptr<const LammpsModel> model_;
   std::unique_ptr<RankEngine> engine_;  // none: plain
-  std::vector<Vector3> axis_;           // of own and ghost elements
+  std::vector<Vector3> axis_;           // axes of own and ghost elements
   double energy_ = 0;
 };
 

@@ -222,7 +222,7 @@ double RankEngine::kinetic_energy() const {
 
 bool RankEngine::stale() {
   ++steps_;
-  Change all;  // in the order of the elements, whatever the threads
+  Change all;  // summed in the order of the elements, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   return list_.stale(all);
 }

@@ -81,11 +81,11 @@ class RankEngine {
   // Energies of this rank's pairs and bonds in the last evaluation.
   BondEnergy bond_energy() const;
   double contact_energy();  // evaluates the contact again where the last time left it out
-  double damping_power() const { return forces_.damping_power; }                         // eV/ps
-  const std::vector<double>& term_energy() const { return forces_.term_energy; }         // of each force term
+  double damping_power() const { return forces_.damping_power; }                  // eV/ps
+  const std::vector<double>& term_energy() const { return forces_.term_energy; }  // energy of each force term
   std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }  // this rank's share
   double lost() const { return forces_.lost; }  // eV, by force terms whose memory has moved on
-  int slipping_element() const;                 // of the scene; -1: none
+  int slipping_element() const;                 // number in the scene; -1: none
   // xx, yy, zz, xy, xz, yz of separation times force, without damping.
   std::array<double, 6> virial(Parts parts);
 
@@ -117,14 +117,14 @@ class RankEngine {
   // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and
   // bits of the motion must not depend on that.
   std::vector<Segment> moved_;
-  std::vector<double> removed_;  // from each of them by the last kick, eV
-  std::vector<int> element_;     // of each own atom
+  std::vector<double> removed_;  // energy that the last kick has removed from each of them, eV
+  std::vector<int> element_;     // element of each own atom
   std::vector<char> is_shared_;  // likewise
   std::vector<Stretch> shared_;  // of those that are
   bool shared_known_ = false;
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
-  std::vector<Change> changes_;                                  // of each of moved_
+  std::vector<Change> changes_;                                  // change of each of moved_
   std::vector<Fastest> fastest_of_;                              // likewise, in the last move
   Fastest fastest_;
   NeighbourList list_;

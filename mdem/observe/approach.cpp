@@ -95,7 +95,7 @@ Fit fit(const std::vector<double>& times, const std::vector<double>& values, dou
   const Eigen::MatrixXd m = e.columns(tau);
   Eigen::MatrixXd jacobian(u.size(), 3);
   jacobian.leftCols(2) = m;
-  jacobian.col(2) = c[1] * m.col(1).array() * (u.array() + 1) / tau;  // by ln(tau)
+  jacobian.col(2) = c[1] * m.col(1).array() * (u.array() + 1) / tau;  // derivative with respect to ln(tau)
   const Eigen::Matrix3d covariance =
       (jacobian.transpose() * jacobian).inverse() * r.squaredNorm() / (n - 3) * n / independent(r);
   out.limit = c[0];

@@ -30,7 +30,7 @@ struct Approach {
   double wait(double part) const { return part < 1 && time > 0 ? -time * std::log(part) : 0; }
 };
 
-inline constexpr int least_rows_of_approach = 8;  // in a quarter
+inline constexpr int least_rows_of_approach = 8;  // rows in a quarter
 
 // Times are increasing and begin at 0. Residuals of neighbouring rows are alike, which `statistics` counts. With
 // too few rows in one of both quarters the errors are infinite.

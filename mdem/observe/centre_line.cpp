@@ -106,7 +106,7 @@ Vector3 tube_tangent(const Topology& topology, const State& state, int tube, int
 
 namespace {
 
-// Of the tubes from `from` up to that before `behind`.
+// Centre line of the tubes from `from` up to that before `behind`.
 CentreLine line_of(const Topology& topology, const State& state, int from, int behind) {
   const int n = common_length(topology), tubes = behind - from;
   CentreLine line;

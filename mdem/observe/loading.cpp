@@ -111,7 +111,7 @@ LoadingReference loading_reference(const Topology& tubes, const State& start, co
     const Vector3 arm = start.position[static_cast<std::size_t>(topology.tube_begin[t] + n / 2)] - centre;
     return arm - arm.dot(axis) * axis;
   };
-  std::vector<double> radii;  // of the strands
+  std::vector<double> radii;  // radii of the strands
   for (int a = 0; a < topology.tubes(); ++a) {
     const double radius = middle(a).norm();
     radii.push_back(radius);
@@ -258,7 +258,7 @@ Loading loading(const Topology& topology, const State& state, const LoadingRefer
   if (reference.knows_pressures() && !reference.core.empty()) {
     out.core_pressure = 0;
     const TubePressures pressures(topology, state, *reference.law, reference.cells);
-    // Of the tubes in the middle of these strands.
+    // Mean over the tubes in the middle of these strands.
     for (const int s : reference.core)
       out.core_pressure += pressures.of(topology.tube_of(strands.tube_begin[s] + strands.length_of(s) / 2)) /
                            static_cast<double>(reference.core.size());

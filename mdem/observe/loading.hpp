@@ -36,7 +36,7 @@ LoadingReference of_parts(LoadingReference reference, const Topology& whole, con
 
 struct Loading {
   double ends_apart = 0;     // nm, between the centres of the ends; of a slice: its period
-  double strain = 0;         // of that distance
+  double strain = 0;         // relative change of that distance
   double least_tension = 0;  // eV/nm, of a tube, mean over its middle third
   double most_tension = 0;   // eV/nm, likewise
   double curvature = 0;      // 1/nm, the largest

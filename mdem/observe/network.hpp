@@ -47,7 +47,7 @@ class TubeClusters {
 
 // All of a film or of another random network.
 struct TubeNetwork {
-  double contacts = 0;                    // of a tube with others, mean
+  double contacts = 0;                    // mean number of contacts of a tube with others
   double largest = 0;                     // the part of all tubes that are in the largest cluster
   bool spans_x = false, spans_y = false;  // some cluster does, see TubeClusters
 };

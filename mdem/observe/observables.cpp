@@ -16,7 +16,7 @@ using Group = ObservableGroup;
 using M = Measurement;
 using units::degree;
 
-constexpr double rounding = 1e-4;  // of the potential energies, pairs being in single precision
+constexpr double rounding = 1e-4;  // relative to the potential energies: pairs are in single precision
 
 // Of the rope whose mass counts.
 const Energies& energies(const M& m) {

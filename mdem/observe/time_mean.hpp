@@ -24,7 +24,7 @@ struct TimeMean {
 
 inline constexpr double least_independent = 30;
 
-// Of values at even times.
+// Mean of values at even times.
 TimeMean time_mean(const std::vector<double>& values);
 
 }  // namespace ropewalk

@@ -13,10 +13,10 @@
 namespace ropewalk {
 namespace {
 
-constexpr double wide_ratio = 1.35;                         // of circumradii
-const double passage_ratio = 0.5 * (1.0 + std::sqrt(3.0));  // of spacings
-const double packed_circumradius = 1.0 / std::sqrt(3.0);    // of spacings
-const double packed_area = 0.25 * std::sqrt(3.0);           // of spacings squared
+constexpr double wide_ratio = 1.35;                         // ratio of circumradii
+const double passage_ratio = 0.5 * (1.0 + std::sqrt(3.0));  // in spacings
+const double packed_circumradius = 1.0 / std::sqrt(3.0);    // in spacings
+const double packed_area = 0.25 * std::sqrt(3.0);           // in spacings squared
 
 struct Measure {
   double circumradius = 0, area = 0;

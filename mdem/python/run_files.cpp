@@ -26,7 +26,7 @@ void bind_run_files(py::module_& m) {
         values(r, c) = rows[static_cast<std::size_t>(r)].values()[static_cast<std::size_t>(c)];
     return out;
   });
-  // Of values at these times (ps): mean, error, correlation time and the time needed for an error (ps).
+  // Statistics of values at these times (ps): mean, error, correlation time and the time needed for an error (ps).
   m.def("mean_over_time", [](const std::vector<double>& times, const std::vector<double>& values) {
     std::vector<LogRow> log(times.size());
     const std::size_t any = index_of_observable("kinetic_eV");

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "io/bath_words.hpp"
 #include "io/error_exit.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
@@ -84,7 +85,11 @@ RunResult Run::result(RunEnd end, const std::string& reason) const {
 // Without them where its files were taken away meanwhile.
 void Run::add_results(RunResult& r) const {
   try {
-    if (!parts_.moving.relaxes()) r.results = result_sentences(results_of(r.directory, parts_.moving.prepared));
+    if (parts_.moving.relaxes()) return;
+    r.results = result_sentences(results_of(r.directory, parts_.moving.prepared));
+    if (const ThermostatOptions* bath = parts_.moving.scene.bath())
+      if (const std::string words = bath_words(read_log(r.directory.log()), bath->coupling); !words.empty())
+        r.results.push_back(words);
   } catch (const InputError&) {
   }
 }

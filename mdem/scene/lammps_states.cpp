@@ -35,8 +35,8 @@ constexpr std::array<OutputColumn, std::tuple_size<StateRecord>::value> record_c
     {"tqz", "eV", "torque, damping included"},
 }};
 
-constexpr double largest_number = 1e12;    // of any number of a state, in its unit
-constexpr double quaternion_slack = 1e-6;  // of a quaternion
+constexpr double largest_number = 1e12;    // limit of any number of a state, in its unit
+constexpr double quaternion_slack = 1e-6;  // allowed deviation of a quaternion's norm from 1
 constexpr std::int64_t largest_step = 1000000000000000;
 constexpr const char* ask_for_export = "was it written by the in.rope of this export?";
 

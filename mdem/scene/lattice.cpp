@@ -24,7 +24,7 @@ std::vector<std::pair<double, double>> hexagonal_lattice(int tubes, double spaci
   for (int shell = 1; static_cast<int>(places.size()) < tubes; ++shell)
     for (int side = 0; side < 6; ++side)
       for (int k = 0; k < shell; ++k) {
-        // From the corner of this side towards the next.
+        // Steps from the corner of this side towards the next.
         const auto& corner = step[side];
         const auto& along = step[(side + 2) % 6];
         places.emplace_back(spacing * (shell * corner.first + k * along.first),

@@ -10,7 +10,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double most_overlap = 1e-3;  // nm
-constexpr double skin = 0.3;           // of the largest distance: margin of the list of pairs
+constexpr double skin = 0.3;           // relative to the largest distance: margin of the list of pairs
 
 class Drawing {
  public:

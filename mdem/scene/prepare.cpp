@@ -23,7 +23,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double least_held = 0.9;  // of the temperature of a bath, beside what damps
+constexpr double least_held = 0.9;  // relative to the temperature of a bath, beside what damps
 constexpr double max_steps = 1e12;  // years, even of a single tube
 
 double chosen_step(const Scene& scene, const TimeStepLimit& limit) {
@@ -229,13 +229,14 @@ std::vector<std::string> warmth_of(const Scene& scene, const Prepared& p) {
   const ThermostatOptions* bath = scene.bath();
   const double excess = excess_of_positions(p.limit, p.time_step);
   if (is_warm(scene))
-    out.push_back(bath ? fmt::format("The time step makes the velocities at its end, and so kinetic_eV, up to {:.2g} % "
-                                     "colder than the bath. Positions, and so the energies of the bonds, have its "
-                                     "temperature.",
-                                     100 * (1 - 1 / (1 + excess)))
-                       : fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % "
-                                     "hotter than velocities.",
-                                     100 * excess));
+    out.push_back(
+        bath ? fmt::format("The time step makes the velocities at its end, and so kinetic_eV, up to {:.2g} % "
+                           "colder than the bath. Positions, and so the energies of the bonds, have its "
+                           "temperature.",
+                           100 * (1 - 1 / (1 + excess)))
+             : fmt::format("The time step makes positions, and so the energies of the bonds, up to {:.2g} % "
+                           "hotter than velocities.",
+                           100 * excess));
   if (bath ? !is_warm(scene) : scene.run.mode == RunOptions::Mode::relax || scene.start.temperature <= 0)
     return out;
   const Cooling cooling(scene, p);
@@ -293,10 +294,9 @@ Prepared prepare(Scene& scene) {
   const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
   const bool typed = rope && !rope->typed_places.empty();
   if (scene.from_file() || typed)
-    refuse_overlaps(
-        out.topology, out.interaction, out.state,
-        typed ? place_in(scene, "rope.places_nm") : InputError::Place{scene.source->file(), 0, ""},
-        scene.run.mode == RunOptions::Mode::relax);
+    refuse_overlaps(out.topology, out.interaction, out.state,
+                    typed ? place_in(scene, "rope.places_nm") : InputError::Place{scene.source->file(), 0, ""},
+                    scene.run.mode == RunOptions::Mode::relax);
   refuse_stop_rules(scene);
   refuse_expectations(scene, out.duration);
   return out;

@@ -16,7 +16,7 @@ double distance_of(const Scene& scene, const ContactLaw* law, TypePair types, Di
   return radius(types.i) + radius(types.j) + graphite_gap;
 }
 
-// Of all pairs of tube types.
+// Largest distance over all pairs of tube types.
 double largest_distance(const Scene& scene, const ContactLaw* law, Distance distance) {
   double largest = 0;
   const int types = static_cast<int>(scene.sets.size());
@@ -70,7 +70,7 @@ double coaxial_gap(const Scene& scene) {
   const auto types = static_cast<int>(scene.sets.size());
   for (int i = 0; law && i < types; ++i)
     for (int j = 0; j < types; ++j) {
-      // From afar, where they attract each other, to the first push.
+      // Searches from afar, where tubes attract, to the first push.
       double far = law->range({i, j}), near = far;
       const auto push = [&](double gap) { return force_of_ends(*law, {i, j}, scene.element_length, gap); };
       while (near > graphite_gap && !(push(near) > 0)) far = near, near -= 0.02;

@@ -40,7 +40,7 @@ constexpr std::size_t columns_at_rest = 8;
 const std::string whole_header = column_names(columns);
 const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
-constexpr double norm_slack = 1e-3;                       // of a quaternion
+constexpr double norm_slack = 1e-3;                       // allowed deviation of a quaternion's norm from 1
 constexpr double norm_rounding = 1e-14;                   // of its square, in which it stays as it is
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 // Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of
@@ -117,7 +117,7 @@ class StateSum {
 
  private:
   long elements_ = 0;
-  std::string hash_;  // of the one before and this element
+  std::string hash_;  // hash of the one before and this element
 };
 
 std::string stated_sum(const CsvReader& csv) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char *memory_header = "term,which,element,numbers", *sum_words = "state: ";
 
-constexpr int no_element = -1;  // in the first line of each term
+constexpr int no_element = -1;  // marks the first line of each term
 
 // A sum over the lines of a state file that hold elements.
 std::string sum_of_rows(const std::string& state) {

@@ -83,7 +83,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
                   "--threads: many is not a whole number; see ropewalk run --help"},
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
-        std::pair{"plan --check d --stretch 0", "--stretch: 0 must be positive"},
+        std::pair{"check d --accuracy --stretch 0", "--stretch: 0 must be positive"},
         std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
@@ -590,8 +590,6 @@ TEST_F(Cli, TheGradeOfASetIsSaidEverywhere) {
   EXPECT_NE(report.find("has a standard deviation of 0.73 % of the well"), std::string::npos);
   EXPECT_NE(report.find("if the 12 pairs of a close-packed rope of this size have random registries"),
             std::string::npos);
-  const Outcome plan = run("plan s.toml --error 5%");
-  EXPECT_NE(plan.out.find("parameters " + grade), std::string::npos) << plan.out << plan.err;
   // Runs of 0.1 have no grade in their manifest.
   std::string manifest = slurp(dir / "d/manifest.json");
   const std::size_t at = manifest.find("  \"grade\"");
@@ -988,11 +986,7 @@ TEST_F(Cli, BenchKnowsScenesByName) {
     EXPECT_GT(b["nodes_per_span"].get<double>(), 1);
     EXPECT_GT(b["radial_evaluations_useful"].get<double>(), 1);
     EXPECT_LT(b["radial_evaluations_useful"].get<double>(), b["radial_evaluations_per_element_step"].get<double>());
-    for (const char* rate :
-         {"contact_GFLOP_per_s", "contact_share_of_peak", "moved_GB_per_s", "moved_share_of_peak"})
-      EXPECT_GT(b[rate].get<double>(), 0) << rate;
-    EXPECT_GT(b["machine"]["peak_GFLOP_per_s"].get<double>(), 0);
-    EXPECT_GT(b["machine"]["peak_GB_per_s"].get<double>(), 0);
+    for (const char* rate : {"contact_GFLOP_per_s", "moved_GB_per_s"}) EXPECT_GT(b[rate].get<double>(), 0) << rate;
     EXPECT_EQ(b["moved_bytes_per_element_step"], both[0]["moved_bytes_per_element_step"]);
     EXPECT_GT(b["moved_bytes_per_element_step"].get<double>(), 256);  // state and axes, read and written
     EXPECT_LT(b["list_share"].get<double>(), 1);
@@ -1000,13 +994,6 @@ TEST_F(Cli, BenchKnowsScenesByName) {
   const Json paper = Json::parse(run("bench rope-91x50 --law paper --steps 2 --json").out);
   EXPECT_EQ(paper["elements"], 4550);
   EXPECT_FALSE(paper.contains("spans_per_element"));
-  const Json parts = Json::parse(run("bench film-1e3 --parts 4 --steps 2 --json").out);
-  ASSERT_EQ(parts["cuts"].size(), 3U);
-  EXPECT_EQ(parts["cuts"][0]["copies"], 0);
-  for (const Json& cut : parts["cuts"])
-    EXPECT_NEAR(cut["own"].get<double>() * cut["parts"].get<double>(), parts["elements"].get<double>(), 1e-6);
-  EXPECT_GT(parts["cuts"][2]["copies"], 10);
-  EXPECT_GT(parts["ns_per_own_element"], 1);
   EXPECT_EQ(run("bench film-1e9").code, 2);
   EXPECT_EQ(run("bench film-1e3 --after -1").code, 2);
   EXPECT_EQ(run("bench --law paper " ROPEWALK_SOURCE_DIR "/data/scenes/spindle-67nm.toml").code, 2);
@@ -1107,13 +1094,13 @@ TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
 // Beyond what tubes bear a curve ends, and says so; `check` has said what it would be.
 TEST_F(Cli, ACurveOfStatesOfRestEndsWithItsReasonAndARemedy) {
   spit(dir / "s.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\nelements = 10\n"
-       "[twist]\nmoment_nN_nm = 300\nrate_nN_nm_per_ps = 1\n[statics]\nsteps = 10\n"
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 27\n"
+       "[twist]\nmoment_nN_nm = 20.2\nrate_nN_nm_per_ps = 1\n[statics]\nsteps = 2\n"
        "[run]\nmode = \"relax\"\nsolver = \"newton\"\n");
   const Outcome check = run("check s.toml");
   EXPECT_EQ(check.code, 0) << check.err;
-  EXPECT_THAT(check.out, HasSubstr("11 states of rest along the schedules"));
-  EXPECT_THAT(check.out, HasSubstr("0 to 300 nN nm"));
+  EXPECT_THAT(check.out, HasSubstr("3 states of rest along the schedules"));
+  EXPECT_THAT(check.out, HasSubstr("0 to 20.2 nN nm"));
   EXPECT_THAT(check.out, HasSubstr("for whether it is stable"));
   const Outcome o = run("run s.toml --out r");
   EXPECT_EQ(o.code, 4) << o.out << o.err;
@@ -1121,7 +1108,7 @@ TEST_F(Cli, ACurveOfStatesOfRestEndsWithItsReasonAndARemedy) {
   EXPECT_THAT(o.err, HasSubstr("end the load below this one, or take mode = \"dynamics\""));
   EXPECT_EQ(o.err.find("resume"), std::string::npos) << o.err;
   const ropewalk::Equilibria rests = ropewalk::read_equilibria((dir / "r/equilibria.csv").string());
-  ASSERT_GT(rests.size(), 2u);
+  ASSERT_EQ(rests.size(), 2u);
   EXPECT_EQ(rests[1].stability, ropewalk::Equilibrium::Stability::stable);
 }
 

@@ -70,7 +70,7 @@ const char* const verbs_of_a_run[] = {"resume h --quiet",   "report h",
                                       "view h --force",     "observe h",
                                       "picture h -o p.svg", "convert h c.gsd --force",
                                       "compare h whole",    "export h --lammps e --force",
-                                      "errors h --quiet",   "plan --check h --stretch 0.01",
+                                      "errors h --quiet",   "check h --accuracy --stretch 0.01",
                                       "import h",           "run s.toml --out h --force --quiet",
                                       "gather h",           "convert h h/v.pvd --force"};
 
@@ -80,7 +80,7 @@ TEST_F(Surroundings, AHostileRunDirectoryReachesNothingOutside) {
   ASSERT_EQ(run("run s.toml --out whole --quiet").code, 0) << slurp(dir / "stderr.txt");
   ASSERT_EQ(run("run s.toml --out half --quiet --until 0.2").code, 0);
   fs::create_directories(dir / "outside/folder");
-  std::vector<std::string> names = {"lock", "errors", "v", "view.html", "changed.toml", "plan-check.csv"};
+  std::vector<std::string> names = {"lock", "errors", "v", "view.html", "changed.toml"};
   for (const auto& entry : fs::directory_iterator(dir / "half")) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   const std::string mine = "mine, and nobody else's\n";

@@ -447,32 +447,6 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
   EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);
 }
 
-TEST_F(LammpsRun, BenchTimesBoth) {
-  spit(dir / "scene.toml", rope(""));
-  const Outcome o = run("bench scene.toml --lammps 1 --steps 3 --json", leaks_allowed);
-  ASSERT_EQ(o.code, 0) << o.err;
-  const auto times = nlohmann::json::parse(o.out);
-  EXPECT_EQ(times["elements"], 84);
-  EXPECT_GT(times["native_ns_per_element_step"], 1);
-  EXPECT_GT(times["lammps_ns_per_element_step"], 1);
-  EXPECT_GT(times["lammps_processor_ns_per_element_step"], 1);
-}
-
-TEST_F(LammpsRun, BenchSaysWhatOpenMpiAsksOfRoot) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root is refused";
-  spit(dir / "scene.toml", rope(""));
-  const auto without = [&](const std::string& variables) {
-    return run("bench scene.toml --lammps 2 --steps 3",
-               "env -u OMPI_ALLOW_RUN_AS_ROOT -u OMPI_ALLOW_RUN_AS_ROOT_CONFIRM " + variables);
-  };
-  const Outcome o = without("");
-  EXPECT_EQ(o.code, 2);
-  EXPECT_EQ(o.err,
-            "ropewalk: mpirun: does not start programs for root; in a container, set OMPI_ALLOW_RUN_AS_ROOT=1 and "
-            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n");
-  EXPECT_EQ(without("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1").code, 0);
-}
-
 // --- there and back -----------------------------------------------------------------------------------
 
 TEST_F(LammpsRun, ThereAndBackIsOneRun) {

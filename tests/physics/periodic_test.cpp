@@ -741,7 +741,7 @@ TEST(PeriodicSlice, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(pulled("[10]"), "");
   EXPECT_EQ(pulled("\"all\""), "");
   EXPECT_THAT(said(slice_text(7, 20, "[periodic]\ntwist_deg_per_nm = [[0, 0]]\n[run]\nmode = \"relax\"\n")),
-              HasSubstr("follow it in time"));
+              HasSubstr("does not go with run.solver = \"fire\""));
 }
 
 }  // namespace UNIT

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "model/error.hpp"
 #include "observe/loading.hpp"
@@ -134,6 +135,13 @@ TEST(Statics, TubeBetweenCouplesTwistsAsItsBonds) {
                 1e-7);
 }
 
+TEST(Statics, AFreeTubeWithoutForcesIsAtRest) {
+  Simulation s = Beam(10).make();
+  const Statics end = rest(s, {});
+  EXPECT_TRUE(end.relaxed.at_rest);
+  EXPECT_LT(end.newton_steps, 30);
+}
+
 // Straight to the last bit: no force acts sideways.
 Beam column(double part_of_buckling_load) {
   Beam b(31);
@@ -251,6 +259,51 @@ TEST(Statics, TwistedRopeComesToRest) {
   EXPECT_LT(end.newton_steps, 80);
   EXPECT_NEAR(s.total_energy() - s.account().supplied(), before, 1e-9) << "the account of energy holds";
   EXPECT_GT(s.forces().energy.twist, 1);
+}
+
+// Force times slope at the ends is the energy that a length of contact gives back, whatever the shape of the crack.
+// The start: cantilevers in balance with the cohesion.
+TEST(Statics, TwoTubesThatPartGiveBackTheirCohesion) {
+  constexpr int n = 45;
+  constexpr double opening = 2;  // nm, of each end
+  Rope rope(n, 2, 0);
+  rope.topology.types[0].bond = test::published_bond();
+  const BondStiffness& bond = rope.topology.types[0].bond;
+  const auto energy = [&](int elements, double apart) {
+    Rope pair(elements, 2, 0);
+    for (int e = 0; e < 2 * elements; ++e)
+      pair.state.position.set(static_cast<std::size_t>(e),
+                              {e < elements ? 0 : apart, 0, e % elements * element_length});
+    return pair.make().forces().energy.vdw;
+  };
+  double cohesion = 0;  // of a length of two straight tubes, at their best distance
+  for (double apart = 1.7; apart < 1.74; apart += 0.005)
+    cohesion = std::max(cohesion, (energy(20, apart) - energy(30, apart)) / (10 * element_length));
+  const double spacing = rope.in.law->parallel_distance({0, 0}, element_length),
+               crack = std::pow(9 * bond.bend * opening * opening / cohesion, 0.25);
+  ASSERT_LT(crack, 0.5 * n * element_length);
+  for (int t = 0; t < 2; ++t) {
+    const double side = t == 0 ? -1 : 1;
+    for (int e = 0; e < n; ++e) {
+      const auto i = static_cast<std::size_t>(t * n + e);
+      const double z = e * element_length, s = std::min(1.0, z / crack);
+      rope.state.position.set(i, {side * (0.5 * spacing + opening * (1 - 1.5 * s + 0.5 * s * s * s)), 0, z});
+      rope.state.orientation.set(
+          i, test::turn(Vector3::UnitY(), std::atan(side * opening / crack * (1.5 * s * s - 1.5))));
+    }
+    rope.loads.add(FixLoad({t * n}, true, false, false, false));
+    rope.loads.add(FixLoad({(t + 1) * n - 1}, false, false, true, false));
+  }
+  std::vector<int> all(rope.state.size());
+  std::iota(all.begin(), all.end(), 0);
+  rope.loads.add(FixLoad(all, false, true, false, false));
+  Simulation s = rope.make();
+  const Statics end = rest(s, {1e-6, 1e-5});
+  ASSERT_TRUE(end.relaxed.at_rest);
+  double release = 0;
+  for (const std::size_t i : {std::size_t{0}, static_cast<std::size_t>(n)})
+    release += std::fabs(s.forces().force.x[i] * axis_of(s.state().orientation[i]).x());
+  EXPECT_NEAR(release, cohesion, 0.002 * cohesion);
 }
 
 GripLoad moved_by(std::size_t axis, std::vector<Schedule::Point> points, int depth) {

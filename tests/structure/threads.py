@@ -11,7 +11,7 @@ from pathlib import Path
 
 TEAM = re.compile(r"^\s*#\s*pragma\s+omp\s+(?:parallel|teams|target|task)\b|\b_Pragma\(\s*\"\s*omp\s+parallel", re.M)
 # The peak of the machine is measured by every thread, once.
-PLACES = {"mdem/sim/threads/for_each.hpp": 3, "mdem/bench/machine_peak.cpp": 3}
+PLACES = {"mdem/sim/threads/for_each.hpp": 3}
 
 
 def main():

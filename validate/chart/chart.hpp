@@ -40,9 +40,9 @@ struct ChartModel {
   int nodes = 0;  // per element; 0: as line_nodes chooses
   Interaction::Precision precision = Interaction::Precision::mixed;
   double cutoff = 0;         // nm; 0: the set's
-  double length = 1;         // of an element over that of the default; rounded down to whole bonds
+  double length = 1;         // element length over that of the default; rounded down to whole bonds
   double time_step = 0;      // ps, of the bonds; 0: by the fraction
-  double step_fraction = 0;  // of the stability limit; 0: the default of a scene
+  double step_fraction = 0;  // fraction of the stability limit; 0: the default of a scene
   Stepping stepping;
   double mass_scale = 1;
   RunOptions::Mode mode = RunOptions::Mode::dynamics;
@@ -77,7 +77,7 @@ struct Specimen {
   double angle = 0;           // rad, the whole turn
   double moment = 0;          // eV on each grip element instead of an angle, with opposite signs at the two ends
   double ramp = 0, hold = 0;  // ps
-  int increments = 1;         // of a relaxation
+  int increments = 1;         // increments of a relaxation
   // Before a relaxation all elements turn evenly. Otherwise only the grips turn, where the even turn is the
   // solution.
   bool interior_follows = true;
@@ -170,7 +170,7 @@ std::string points_csv(const std::vector<ChartPoint>& points, const std::vector<
 // Points and rows as they stand in a points.csv: costs, values and errors to its digits.
 struct ChartTable {
   std::vector<ChartPoint> points;
-  std::vector<ChartRow> rows;  // of these points
+  std::vector<ChartRow> rows;  // rows of these points
 };
 // Throws InputError where the file is no such table, or has models that this program does not know.
 ChartTable read_points_csv(const std::string& path);

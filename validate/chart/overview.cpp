@@ -7,7 +7,7 @@
 namespace ropewalk::validate {
 namespace {
 
-constexpr double cheap = 0.9, dear = 1.1;  // of the time of the default
+constexpr double cheap = 0.9, dear = 1.1;  // relative to the time of the default
 constexpr double far_off = 0.1;
 
 // The rows of a point against the finest model as one place; the default's error is not known here.
@@ -67,7 +67,7 @@ const ScenePlace& ModelPlaces::worst() const {
 
 std::vector<ModelPlaces> places_over_scenes(const std::vector<ChartPoint>& points,
                                             const std::vector<ChartRow>& rows) {
-  std::map<std::string, ScenePlace> defaults;  // by scene
+  std::map<std::string, ScenePlace> defaults;  // one for each scene
   for (const ChartPoint& p : points)
     if (p.model == default_model) {
       const ScenePlace place = place_of(p, rows);

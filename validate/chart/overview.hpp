@@ -22,7 +22,7 @@ struct ScenePlace {
   double cost = 0;           // CPU time per simulated time over that of the default
   double error = 0;          // the largest of the scene's observables against the finest model, a fraction
   std::string observable;    // which has it
-  double default_error = 0;  // of the default in this scene
+  double default_error = 0;  // error of the default in this scene
 };
 
 struct ModelPlaces {

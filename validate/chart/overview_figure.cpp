@@ -22,7 +22,7 @@ constexpr const char* combined = "combination";
 std::vector<ModelPlaces> shown(const std::vector<ModelPlaces>& all) {
   std::size_t most = 0;
   for (const ModelPlaces& m : all) most = std::max(most, m.scenes.size());
-  std::vector<const ModelPlaces*> compared;  // in half of the scenes or more
+  std::vector<const ModelPlaces*> compared;  // models that half of the scenes or more have
   std::vector<double> cost, error;
   for (const ModelPlaces& m : all) {
     if (2 * m.scenes.size() < most) continue;
@@ -89,7 +89,7 @@ void add_scenes(const KindStyle& kind, const std::vector<ModelPlaces>& models, S
   add(scatter, line, style, {});
 }
 
-// From quartile to quartile, through the median.
+// Cross from quartile to quartile, through the median.
 void add_bars(const KindStyle& kind, const std::vector<ModelPlaces>& models, ScatterChart& scatter) {
   ChartLine line = empty_line(kind, false);
   for (const ModelPlaces& m : models) {

@@ -43,7 +43,7 @@ constexpr double film_length = 32 * element, film_side = 60, film_spacing = 1.7;
 constexpr double film_time = 30;                                                  // ps, twice
 constexpr double crossed_length = 8 * element;                                    // nm
 constexpr double crossed_from = 90, crossed_to = 30;                              // degrees
-constexpr std::size_t md_increment = 4;                                           // of rope-7-short
+constexpr std::size_t md_increment = 4;                                           // increment of rope-7-short
 constexpr double md_angle = 18 * units::degree;                                   // there
 
 // Damping constants of a model are given for elements of the default length.
@@ -190,7 +190,7 @@ Specimen crossed_tubes(const ChartModel& model) {
   Specimen s = empty_specimen(model, a, true);
   s.state = State(static_cast<std::size_t>(2 * (bonds + 1)));
   const ReferenceTable atoms = atoms_table("crossed-tubes");
-  const double distance = atoms.column("distance_nm")[2];  // of the energy minimum at 90 degrees
+  const double distance = atoms.column("distance_nm")[2];  // distance of the energy minimum at 90 degrees
   for (const int tube : {0, 1}) {
     const double angle = tube * crossed_from * units::degree;
     const Vector3 along(std::cos(angle), std::sin(angle), 0);

@@ -36,7 +36,6 @@ Case::Group group_of(const CaseText& text) {
 
 Case with_text(Case c) {
   const CaseText* text = find_case_text(c.name);
-  if (!text && !c.title.empty()) return c;
   if (!text)
     throw InputError({c.name + "/case.md", 0, ""}, "is missing", "write it in the folder of the case's name");
   c.group = group_of(*text);

@@ -19,8 +19,8 @@ namespace ropewalk::validate {
 // One number compared with its oracle.
 struct Check {
   std::string name;      // "EA of the chain"
-  double value = 0;      // of the model
-  double reference = 0;  // of the oracle
+  double value = 0;      // result of the model
+  double reference = 0;  // result of the oracle
   double tolerance = 0;  // largest difference allowed
   bool relative = true;  // tolerance over |reference|; otherwise in the unit
   std::string unit;
@@ -49,7 +49,7 @@ struct Limit {
   // The response of `run` there: it does not start, it ends with the reason, it warns, or it does nothing.
   enum class Guard { refused, stopped, told, none };
   std::string method;  // "time step of a single tube"
-  double found = 0;    // by bisection on the method itself
+  double found = 0;    // place found by bisection on the method itself
   double theory = 0;
   std::string unit;
   Guard guard = Guard::none;
@@ -105,7 +105,7 @@ struct NotApplicable : std::runtime_error {
 
 // One tube of a case.
 struct CaseTube {
-  ParameterSet set;    // of the oracle
+  ParameterSet set;    // set of the oracle
   ParameterSet model;  // the same with the fault
   std::string name;    // "(10,10)"
   std::string source;  // "cnt-10-10-tersoff (hash ...)", for CaseResult::sources
@@ -192,7 +192,8 @@ struct Case {
   std::vector<KnownMiss> known_misses;
 };
 
-// Registers a case before main() begins. Write one at the end of case.cpp; case.md and the folder's name say the rest:
+// Registers a case before main() begins. Write one at the end of case.cpp; case.md and the folder's name say the
+// rest:
 //
 //   const RegisteredCase registered([] {
 //     Case c;

@@ -60,7 +60,7 @@ Check check_of(const Json& j) {
   return c;
 }
 
-constexpr const char* guard_names[] = {"refused", "stopped", "told", "none"};  // in the order of Limit::Guard
+constexpr const char* guard_names[] = {"refused", "stopped", "told", "none"};  // same order as Limit::Guard
 
 Json to_json(const Limit& l) {
   return {{"method", l.method},

@@ -151,7 +151,7 @@ std::string case_html(const Outcome& o, Figures& figures) {
 
 // --- The map of all limits --------------------------------------------------------------------------------
 
-constexpr double agreement = 0.05;       // of found and theory, as the cases require
+constexpr double agreement = 0.05;       // relative difference of found and theory that the cases allow
 constexpr double drawn = 2 * agreement;  // half the width of the strip
 
 // Found over theory, as a dot on a strip with a band of the allowed values.

@@ -75,7 +75,7 @@ class NewFrames {
   std::unique_ptr<FrameWriter> writer_;
 };
 
-// By the name of the file.
+// The format, by the name of the file.
 FrameFormat format_of(const std::string& path);
 
 }  // namespace ropewalk

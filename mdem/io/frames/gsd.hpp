@@ -24,7 +24,7 @@ struct GsdHeader {
   char application[64] = {}, schema[64] = {}, reserved[80] = {};
 };
 static_assert(sizeof(GsdHeader) == 256);
-inline constexpr std::uint64_t slot_bytes = 64;  // of a name
+inline constexpr std::uint64_t slot_bytes = 64;  // bytes of a name
 
 // The place of a chunk: rows times columns of a type. Entries of the index rise by frame, then by name; one with
 // location 0 is free.
@@ -68,8 +68,8 @@ class GsdReader : public FrameReader {
   GsdHeader header_;
   std::uint64_t size_ = 0, position_ = 0;
   std::vector<std::string> names_;
-  std::vector<GsdEntry> entries_;            // of whole frames
-  std::vector<std::size_t> frame_begin_{0};  // in entries_; one more than frames
+  std::vector<GsdEntry> entries_;            // entries of whole frames
+  std::vector<std::size_t> frame_begin_{0};  // indices in entries_; one more than frames
   std::size_t next_ = 0;
 };
 

@@ -31,7 +31,7 @@ inline constexpr std::uint8_t gsd_type<double> = 10;
 
 inline constexpr std::array<std::uint8_t, 11> gsd_type_bytes = {0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
 
-// In the order of the file and of docs/outputs.md.
+// The order is that of the file and of docs/outputs.md.
 enum GsdChunk : std::uint16_t {
   gsd_step,
   gsd_box,

@@ -38,7 +38,7 @@ std::string data_array(const char* name, int components, const std::vector<T>& v
 constexpr OutputColumn director{"director", "", "x axis of the element, normal to the tube: shows physical twist"};
 constexpr OutputColumn axis{"axis", "", "axis of the tube"};
 constexpr OutputColumn tube_number{"tube", "", "tube, from 1"};
-constexpr OutputColumn tube_radius{"radius", "nm", "radius of the tube: scale ParaView's Tube filter by it"};
+constexpr OutputColumn radius_of_tube{"radius", "nm", "radius of the tube: scale ParaView's Tube filter by it"};
 
 template <class Of>
 std::string vectors(const char* name, const State& state, const Of& of) {
@@ -79,7 +79,7 @@ std::string point_data(const Topology& topology, const State& state, const Eleme
     tube.insert(tube.end(), topology.length_of(t), t + 1);
     radius.insert(radius.end(), topology.length_of(t), static_cast<float>(topology.type_of(t).radius));
   }
-  return text + data_array(tube_number.name, 1, tube) + data_array(tube_radius.name, 1, radius);
+  return text + data_array(tube_number.name, 1, tube) + data_array(radius_of_tube.name, 1, radius);
 }
 
 int cell_count(const Topology& topology, bool single) {
@@ -102,7 +102,7 @@ std::vector<OutputColumn> vtp_arrays() {
   std::vector<OutputColumn> columns = {director, axis};
   for (const ColourColumn& c : colour_columns) columns.push_back(c.column);
   columns.push_back(tube_number);
-  columns.push_back(tube_radius);
+  columns.push_back(radius_of_tube);
   return columns;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "io/bath_words.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/grade.hpp"
@@ -167,6 +168,8 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
     if (const Grade grade = grade_of(set); grade.level != Grade::Level::good)
       in.warnings.push_back("Parameters " + set.name + " are " + grade.words() + ".");
   in.log = read_log(dir.log());
+  if (const ThermostatOptions* bath = scene.bath())
+    if (const std::string words = bath_words(in.log, bath->coupling); !words.empty()) in.warnings.push_back(words);
   in.errors = read_run_errors(dir.path, in.log);
   in.whole = read_numeric_errors(dir.path, in.log);
   in.error_bars = error_bars_of(scene, p.topology, in.log);

@@ -98,7 +98,7 @@ class Floor {
   double width_, left_, front_;
   int columns_, rows_;
   std::vector<std::vector<int>> tubes_in_;
-  std::vector<int> seen_;  // of each tube: the call that met it last
+  std::vector<int> seen_;  // the call that met each tube last
 };
 
 // Heights that another tube bars.
@@ -177,7 +177,8 @@ void put_tubes(const std::vector<FilmTube>& tubes, int elements, double element_
     for (int e = 0; e < elements; ++e, ++i) {
       const double s = (e - 0.5 * (elements - 1)) * element_length;
       state.position.set(i, t.middle() + s * axis);
-      state.orientation.set(i, Quaternion(w, -turned * y, turned * x, 0));  // from z to the tube's direction
+      state.orientation.set(i,
+                            Quaternion(w, -turned * y, turned * x, 0));  // rotation from z to the tube's direction
     }
   }
 }

@@ -73,7 +73,7 @@ struct Helices {
         section(rope, s) * Quaternion(Eigen::AngleAxisd(-facing - azimuth(rope, 0), Vector3::UnitZ()));
     return (Quaternion::FromTwoVectors(axis_of(q), velocity(rope, f, s)) * q).normalized();
   }
-  // Of a tube at s from the nearest point of another tube.
+  // Distance of a tube at s from the nearest point of another tube.
   double distance(int rope, const Fibre& f, double s, int other, const Fibre& g) const {
     const Vector3 here = point(rope, f, s);
     double at = s;
@@ -308,7 +308,7 @@ void PliesSource::place(const Scene& scene, double spacing_of_tubes, Random&, To
 
 std::string PliesSource::description(const Topology& t, const State& s, double spacing_of_tubes) const {
   const double degree = units::degree;
-  Vector3 centre = Vector3::Zero();  // of the middle of the first rope
+  Vector3 centre = Vector3::Zero();  // centre of the cross-section in the middle of the first rope
   for (int tube = 0; tube < rope.tubes; ++tube)
     centre += s.position[static_cast<std::size_t>(t.tube_begin[tube] + t.length_of(tube) / 2)] / rope.tubes;
   const double radius = centre.head<2>().norm();

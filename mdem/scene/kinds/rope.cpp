@@ -132,7 +132,7 @@ namespace {
 
 // Anywhere in a disc that has room for them.
 std::vector<std::pair<double, double>> places_at_random(int tubes, double spacing, std::uint64_t seed) {
-  constexpr double filled = 0.6, cell = 0.8660254037844386;  // of the disc; sqrt(3)/2
+  constexpr double filled = 0.6, cell = 0.8660254037844386;  // fraction of the disc; sqrt(3)/2
   const double rim = spacing * std::sqrt(tubes * cell / (units::pi * filled));
   std::vector<std::pair<double, double>> out;
   for (int t = 0; t < tubes; ++t) {

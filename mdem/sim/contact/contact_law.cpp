@@ -36,7 +36,7 @@ struct Lowest {
   double distance, energy;
 };
 
-// On a grid up to the cutoff, then between the neighbours of the best point.
+// Searches a grid up to the cutoff, then between the neighbours of the best point.
 template <class Energy>
 Lowest lowest(double cutoff, const Energy& energy) {
   const double step = cutoff / grid;

@@ -12,7 +12,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr int components = 6;  // of velocity and angular velocity
+constexpr int components = 6;  // components of velocity and angular velocity
 // Elements whose numbers are made together, always in full: a vector function and its scalar twin, which would take
 // a remainder, differ in the last bits.
 constexpr int group = 16;

@@ -116,8 +116,8 @@ Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSea
   Spectra::GenEigsRealShiftSolver<Inverse> solver(
       inverse, wanted, std::min(most + 2, 2 * wanted + search.more_vectors), search.shift);
   solver.init();
-  const Eigen::Index found =
-      solver.compute(Spectra::SortRule::LargestMagn, search.restarts, 1e-11, Spectra::SortRule::LargestReal);
+  const Eigen::Index found = solver.compute(Spectra::SortRule::LargestMagn, search.restarts, search.tolerance,
+                                            Spectra::SortRule::LargestReal);
   Modes out;
   out.shift = search.shift;
   out.resolution = resolution_of(q, tangent, reduction);

@@ -28,7 +28,7 @@ int not_finite(const Forces& f) {
 
 // The bond that is longest against its element; its first element.
 struct LongestBond {
-  double length = 0;  // of the element's
+  double length = 0;  // relative to that of the element
   int element = -1;
 };
 LongestBond longest_bond(const Topology& topology, const Vec3Array& position) {

@@ -209,7 +209,7 @@ void Simulation::update_list() {
   for_blocks(state_.size(), [&](std::size_t block, std::ptrdiff_t begin, std::ptrdiff_t end) {
     changes_[block] = list_.change(state_, begin, end);
   });
-  Change all;  // in the order of the blocks, whatever the threads
+  Change all;  // summed in the order of the blocks, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (list_.stale(all)) {
     if (tunes_skin_ && engine_.contact())
@@ -320,7 +320,7 @@ double Simulation::engine_seconds() const {
 std::size_t Simulation::bytes() const {
   const std::size_t n = state_.size();
   const std::size_t state = (3 + 4 + 3 + 3) * n, forces = 6 * n;
-  const std::size_t reference = 6 * n;  // of the list
+  const std::size_t reference = 6 * n;  // numbers of the reference state of the list
   return (state + forces + reference) * sizeof(double) + engine_.bytes() + list_.bytes();
 }
 

@@ -14,7 +14,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double pressed = 0.985;  // of the spacing
+constexpr double pressed = 0.985;  // relative to the spacing
 
 // Second derivative in the spacing of the energy of one element against a parallel row of elements, maximal
 // over their offsets; taken where a rope under load may be.

@@ -11,7 +11,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr int the_account = -1;  // in the place of an element
+constexpr int the_account = -1;  // stands for the account in place of an element
 
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;

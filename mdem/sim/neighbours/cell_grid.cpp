@@ -19,7 +19,7 @@ struct MemberRange {
 };
 
 struct CellSearch {
-  const float *x, *y, *z;  // of the members
+  const float *x, *y, *z;  // coordinates of the members
   const int* member;
   float at_x, at_y, at_z, reach2;
   int after;

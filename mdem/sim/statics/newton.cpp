@@ -379,7 +379,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       const double end = scale * left.dot(d), first = scale * gain;
       // The energy of a slice is known by the work of its forces alone: energies count the images too.
       const double change = is_slice() ? -0.5 * (first + end) : energy_of(s_) - at.energy,
-                   noise = 1e-10 * std::fabs(at.energy);
+                   noise = 1e-10 * std::fabs(at.energy) + 1e-12;
       if (!fine || !(change < -1e-4 * first + noise) || !(end > -1.5 * std::fabs(first) - 1e-9)) {
         ++out_.refused;
         s_ = before;
@@ -394,7 +394,8 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       const double by_model =
           scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
       const double disagreement = std::fabs(end - by_model) / std::fabs(first);
-      if (disagreement < 0.3 && scale > 0.3)
+      // What is left of forces at rest is rounding, which no model foresees.
+      if ((disagreement < 0.3 && scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
         pace->rate = std::max(options_.least_rate, pace->rate / 3);
       else if (end - by_model < -0.7 * std::fabs(first))
         pace->rate *= 2;

@@ -15,7 +15,9 @@ namespace {
 
 // Rates next to zero; and those that are so far from it that the many slow decays of a rope are nearer to the first
 // shift.
-constexpr ModeSearch slow_motions{6, 0.05, true, 20}, fast_motions{2, 0.5, true, 24, 2, true};
+constexpr double rate_tolerance = 1e-6;  // of 1/(rate - shift): errors of 5e-5/ns next to zero
+constexpr ModeSearch slow_motions{12, 0.05, true, 40, 300, false, rate_tolerance},
+    fast_motions{1, 0.5, true, 20, 1, true, rate_tolerance};
 
 }  // namespace
 

@@ -17,7 +17,7 @@ struct GrippedRope {
   Topology topology;
   Interaction interaction;
   State state;
-  Forces forces;                  // of relax()
+  Forces forces;                  // result of relax()
   std::vector<int> lower, upper;  // elements of the grips
   int bonds = 0;                  // between the grips, of each tube
   int held = 0;                   // elements of a grip in each tube

@@ -21,8 +21,10 @@ class ParallelBond {
 
   // separation = x_j - x_i before and after the moves.
   void advance(const Vector3& before, const Vector3& after, const ElementMove& i, const ElementMove& j);
-  double energy(const Vector3& separation) const;  // of the accumulated force and moment, eV
-  const Vector3& force() const { return force_; }  // on element j at the middle of the bond; i feels the opposite
+  double energy(const Vector3& separation) const;  // energy of the accumulated force and moment, eV
+  const Vector3& force() const {
+    return force_;
+  }  // acts on element j at the middle of the bond; i feels the opposite
   const Vector3& moment() const { return moment_; }
 
  private:

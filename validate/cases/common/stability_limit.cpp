@@ -11,7 +11,7 @@
 namespace ropewalk::validate {
 namespace {
 
-constexpr double enough_growth = 1e6;  // of the kinetic energy
+constexpr double enough_growth = 1e6;  // factor of the kinetic energy that counts as unstable
 
 }  // namespace
 
@@ -93,7 +93,7 @@ Eigen::MatrixXd derivative(const Topology& topology, const Interaction& interact
     }
     return out;
   };
-  Eigen::VectorXd root(n);  // of mass and inertia
+  Eigen::VectorXd root(n);  // square roots of mass and inertia
   for (Eigen::Index k = 0; k < n; ++k) {
     const TubeType& type = topology.type_of_element(static_cast<int>(k / 6));
     root[k] = std::sqrt(k % 6 < 3 ? type.mass : type.inertia);

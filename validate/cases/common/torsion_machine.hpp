@@ -39,9 +39,9 @@ struct RopeInMachine {
   // At rest.
   struct Reading {
     double torque = 0, tension = 0;  // per tube: eV, eV/nm
-    double stretch = 1;              // of the relaxed length
+    double stretch = 1;              // relative to the relaxed length
     double energy = 0;               // eV per tube, above the straight rope
-    double stretch_share = 0;        // of the energy of the bonds
+    double stretch_share = 0;        // fraction of the bonds' energy
     double core_pressure = 0;        // eV/nm^3
   };
 
@@ -72,7 +72,7 @@ struct RopeInMachine {
  private:
   State straight_;  // at rest
   double straight_energy_ = 0;
-  double bond_stretch_ = 1;  // of the relaxed rope
+  double bond_stretch_ = 1;  // stretch of the relaxed rope
 };
 
 }  // namespace ropewalk::validate

@@ -9,7 +9,7 @@ namespace ropewalk::validate {
 namespace {
 
 constexpr int curve_points = 160;
-constexpr double give_way = 0.9;  // of the greatest slope so far
+constexpr double give_way = 0.9;  // fraction of the greatest slope so far
 
 double deviation(const TubeCurve& c, std::size_t k) { return c.model(c.amplitude[k]) / c.atoms[k] - 1; }
 

@@ -197,20 +197,6 @@ void add_figures(const std::vector<Series>& all, CaseResult& result) {
       comparison(all, &TwistedState::moment, false, "end moment", "eV", "Moment on the upper grip."));
 }
 
-std::vector<std::string> remarks_of(const RopeComparison& c) {
-  std::vector<std::string> remarks = {
-      "No stiffness was fitted to a rope. The clamped length follows from the places of the held atoms; it was not "
-      "adjusted.",
-      "The bonds are anharmonic: stretched tubes soften in tension and in torsion, as in the periodic cells of the "
-      "calibration.",
-      "A short clamped tube shears where it bends. The shear stiffness of the bonds is that of a thin tube with "
-      "the calibrated `EA` and `GJ`; it was not fitted. Bonds without shear are shown for comparison.",
-      "The vdW energies differ by registry: relaxed atoms move into registry, smooth tubes have none. In both, the "
-      "change of the vdW energy is below one percent of the twisting energy."};
-  remarks.insert(remarks.end(), c.remarks.begin(), c.remarks.end());
-  return remarks;
-}
-
 // The elastic range: to this twist the torsional stiffness of a single tube stays within 1 %.
 constexpr double elastic_shear = 0.0412;  // r tau; steps of the stored tables end at 0.0400 to 0.0409
 
@@ -253,7 +239,6 @@ CaseResult run_ropes(const RopeComparison& c, const CaseContext& context) {
   std::vector<Series> all;
   for (const CaseTube& tube : context.tubes()) compare(c, tube, context, all, result);
   add_figures(all, result);
-  result.remarks = remarks_of(c);
   return result;
 }
 
@@ -271,31 +256,10 @@ std::vector<TwistedState> states_of(const ReferenceTable& table, bool axial_free
   return states;
 }
 
-Case twisted_rope_case(const RopeComparison& comparison, const std::string& title) {
+Case twisted_rope_case(const RopeComparison& comparison) {
   Case c;
   c.name = comparison.name;
-  c.group = Case::Group::atoms;
   c.tier = Case::Tier::full;
-  c.title = title;
-  c.why =
-      "The program is made for this: torsion, bending, stretch and vdW contact at once. The stiffnesses were "
-      "measured on single tubes; no number was fitted to a rope.";
-  c.setup = fmt::format(
-      "Seven {{tube}} tubes in hexagonal packing, about {:.0f} nm between the clamps. Bands of 1 nm at both ends "
-      "turn as rigid bodies by plus and minus half of the angle, at a fixed distance{}. The interior is relaxed "
-      "after each increment of the angle. The checks lie in the elastic range, in which the torsional stiffness of "
-      "a single tube stays within 1 % (`r tau = 0.04`).",
-      comparison.length,
-      comparison.axial_free.size() > 1 ? " and, in a second series, free to approach each other" : "");
-  c.oracle =
-      "LAMMPS: the interatomic potential of the set within each tube, Lennard-Jones with its cutoff between "
-      "tubes. The tubes are turned and shifted against each other so that all registries occur. The clamped "
-      "length, the same for atoms and elements, reaches from the last held atoms of one band to the first of the "
-      "other.";
-  c.literature =
-      "L. Lindsay, D. A. Broido, Phys. Rev. B 81, 205441 (2010), DOI 10.1103/PhysRevB.81.205441 (Tersoff "
-      "potential); A. P. Thompson et al., Comput. Phys. Commun. 271, 108171 (2022), DOI 10.1016/j.cpc.2021.108171 "
-      "(LAMMPS)";
   c.run = [comparison](const CaseContext& context) { return run_ropes(comparison, context); };
   c.tables = {comparison.name};
   c.lammps_seconds = [comparison](const ParameterSet& set) {

@@ -29,9 +29,9 @@
 namespace ropewalk::validate {
 
 struct TwistedRope {
-  std::string name;   // of the table of references
+  std::string name;   // name of the table of references
   int free_rows = 0;  // between the bands
-  int band_rows = 0;  // in each band
+  int band_rows = 0;  // rows in each band
   int bonds = 0;      // within the clamped length; 1.5 of them should be as long as a band
 };
 // About `length` nm between bands of 1 nm, with bonds of 0.62 nm.
@@ -81,15 +81,14 @@ std::vector<TwistedState> twist_elements(const TwistedRope& rope, const Paramete
 
 // The comparison for each tube of a case.
 struct RopeComparison {
-  std::string name;     // of the table
+  std::string name;     // name of the table
   double length = 8;    // nm
   double shear = 0.04;  // r tau of the last increment, where none are stored
   int increments = 6;
   std::vector<bool> axial_free = {false, true};  // the series: grips fixed, and free along the axis
   std::vector<double> collapsed;                 // degrees beyond the collapse, compared within 10 %
-  std::vector<std::string> remarks;
 };
 // A case of such ropes, without its order, its sets and its faults.
-Case twisted_rope_case(const RopeComparison& comparison, const std::string& title);
+Case twisted_rope_case(const RopeComparison& comparison);
 
 }  // namespace ropewalk::validate

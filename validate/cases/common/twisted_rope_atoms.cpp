@@ -16,7 +16,7 @@ namespace ropewalk::validate {
 namespace {
 
 constexpr int tubes = 7;
-constexpr double golden = 0.6180339887498949;  // of the additive sequence that spreads the registries
+constexpr double golden = 0.6180339887498949;  // step of the additive sequence that spreads the registries
 
 double part(double x) { return x - std::floor(x); }
 

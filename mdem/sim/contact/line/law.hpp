@@ -10,7 +10,7 @@ namespace ropewalk {
 
 class LineLaw : public ContactLaw {
  public:
-  const std::vector<LineContact> pairs;  // of tube types i, j at i * types + j
+  const std::vector<LineContact> pairs;  // pair of tube types i, j at i * types + j
 
   // `wells`: of parallel tubes, pair by pair, where they are known; empty: they are searched for. Throws
   // std::invalid_argument where the pairs are not those of a whole number of types.
@@ -42,7 +42,7 @@ class LineLaw : public ContactLaw {
   const LineWell& well(TypePair p) const { return wells_[static_cast<std::size_t>(p.i * types_ + p.j)]; }
 
   int types_ = 0;
-  std::vector<LineWell> wells_;  // of parallel tubes, as `pairs`
+  std::vector<LineWell> wells_;  // wells of parallel tubes, indexed as `pairs`
 };
 
 inline std::shared_ptr<const LineLaw> line_law(std::vector<LineContact> pairs) {

@@ -122,10 +122,10 @@ struct SpanFinder {
 
 }  // namespace
 
-// By one thread.
+// Work of one thread.
 struct LineList::Found {
   std::vector<NeighbourSpan> spans;
-  std::vector<std::size_t> count;  // of each element
+  std::vector<std::size_t> count;  // count of each element
 
   void find(const Topology& topology, const Interaction& in, const NeighbourList& list, double near_reach,
             int tube) {
@@ -170,7 +170,7 @@ double LineList::best_skin(const Topology& topology, double listed, long steps) 
     else
       always += cost_out_of_reach + cost;
   }
-  const double wear = listed / static_cast<double>(std::max(steps, 1L));  // by how much distances change in a step
+  const double wear = listed / static_cast<double>(std::max(steps, 1L));  // change of distances in a step
   // For a step, over the life of a list, and of building it. What lies farther out than this list is taken to be as
   // much as in its outermost part.
   const auto step_cost = [&](double skin) {

@@ -123,7 +123,7 @@ RadialPieces<T, degree_>::RadialPieces(const LineDensity& law, double unit_nm, d
   const double core_at = squared(law.contact + law.core_gap), end_at = squared(law.cutoff());
   const double switch_at = squared(law.contact + law.switch_gap);
   const double singular_at = squared(std::max(law.contact - law.c, 0.0));
-  // By trial, with tubes of (5,5) to (10,10).
+  // Values found by trial, with tubes of (5,5) to (10,10).
   const double pole_at = core_at - 0.72 * (core_at - singular_at), across = core_at - pole_at;
   const double unit2 = squared(unit_nm);
   width = static_cast<T>(across / unit2);

@@ -51,7 +51,7 @@ struct RadialTable {
   T scale = 0, shift = 0;                      // y = scale X + shift, X = rho^2 in units of unit^2
   T core2 = 0, cutoff2 = 0;                    // X
   T force = 0;               // -2/delta unit: times du/dy and the separation in units gives eV/nm^3 times nm
-  T contact = 0, core = 0;   // of the law, nm
+  T contact = 0, core = 0;   // limits of the law, nm
   T v0 = 0, v1 = 0, v2 = 0;  // u = v0 + e (v1 + e v2/2), e = rho - contact - core, below the core
   T unit = 0;                // nm
 

@@ -61,7 +61,7 @@ PaperWells paper_wells(const PaperContact& contact, double element_length) {
   out.parallel = paper_parallel_energy(contact, element_length, out.spacing);
   out.crossed_deepest = std::numeric_limits<double>::infinity();
   out.crossed_shallowest = -out.crossed_deepest;
-  constexpr int parts = 4;  // of half an element; the other half mirrors it
+  constexpr int parts = 4;  // parts of half an element; the other half mirrors it
   for (int i = 0; i <= parts; ++i)
     for (int j = 0; j <= i; ++j) {
       const auto energy = [&](double distance) {

@@ -20,7 +20,8 @@ class ContactViscosityTerm : public ForceTerm {
 
   void list_chunk(std::size_t chunk, const ChunkPairs& pairs) override {
     DampedBlocks blocks;
-    std::vector<BufferRange> at(static_cast<std::size_t>(pairs.entries()));  // by the first entry of a range
+    std::vector<BufferRange> at(
+        static_cast<std::size_t>(pairs.entries()));  // indexed by the first entry of a range
     const auto mark = [&](const BufferRange& range) {
       at[static_cast<std::size_t>(range.begin + range.shift)] = range;
     };
@@ -71,7 +72,7 @@ class ContactViscosityTerm : public ForceTerm {
  private:
   struct Chunk {
     std::vector<DampedBlock> blocks;
-    std::vector<BufferRange> ranges;  // of the elements in the blocks
+    std::vector<BufferRange> ranges;  // ranges of the elements in the blocks
     int entries = 0;
   };
 

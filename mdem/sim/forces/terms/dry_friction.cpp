@@ -14,7 +14,7 @@ namespace {
 
 constexpr double begins_within = 0.42, ends_beyond = 0.47;  // nm between the walls
 constexpr double begins_above = 0.5, ends_below = 0.4;      // cosine of the angle of the axes
-constexpr double passes_on_beyond = 0.6;                    // of an element, from its centre
+constexpr double passes_on_beyond = 0.6;                    // fraction of an element, from its centre
 
 double square(double x) { return x * x; }
 
@@ -208,7 +208,7 @@ class DryFrictionTerm : public ForceTerm {
   };
   // What a contact has to know of an element, since a scene may move in memory.
   struct Element {
-    int number = 0;        // in the scene
+    int number = 0;        // number in the scene
     std::size_t tube = 0;  // likewise
     int type = 0;
     bool own = true, ends_tube = false;
@@ -266,7 +266,7 @@ class DryFrictionTerm : public ForceTerm {
                                      [](const Element& e, int n) { return e.number < n; });
     return at != elements_.end() && at->number == number ? static_cast<int>(at - elements_.begin()) : -1;
   }
-  // Of the scene, of an element's number.
+  // Tube of the scene that has this element.
   std::size_t tube_of(int number) const {
     return static_cast<std::size_t>(std::upper_bound(tube_begin_.begin(), tube_begin_.end(), number) -
                                     tube_begin_.begin()) -
@@ -406,8 +406,8 @@ class DryFrictionTerm : public ForceTerm {
   }
 
   // --- all contacts ---
-  // The records of a memory become contacts, where this process has both elements. Those of other processes count as
-  // well: a contact may pass on to an own element, and the tube of an own element may have a contact already.
+  // The records of a memory become contacts, where this process has both elements. Those of other processes count
+  // as well: a contact may pass on to an own element, and the tube of an own element may have a contact already.
   void take_up(const State& state) {
     for (const TermRecord& r : remembered_) {
       Contact c{place_of(r.element),
@@ -434,11 +434,11 @@ class DryFrictionTerm : public ForceTerm {
                     contacts_.end());
   }
 
-  // Pairs that may come into contact before the next list. Each process has the pairs of some elements, and all must
-  // know the others. The places are those that the list was built for: a resumed run finds the same pairs.
+  // Pairs that may come into contact before the next list. Each process has the pairs of some elements, and all
+  // must know the others. The places are those that the list was built for: a resumed run finds the same pairs.
   void find_candidates(const ListedScene& scene) {
     candidates_.clear();
-    std::vector<int> numbers;  // of a and b, one after another
+    std::vector<int> numbers;  // numbers of a and b, one after another
     const Vec3Array& listed = scene.list.reference();
     const double half = 0.5 * scene.topology.longest_element();
     for (int i = 0; i < scene.topology.elements(); ++i) {
@@ -457,9 +457,8 @@ class DryFrictionTerm : public ForceTerm {
     for (std::size_t k = 0; k < numbers.size(); k += 2)
       if (const int a = place_of(numbers[k]), b = place_of(numbers[k + 1]); a >= 0 && b >= 0)
         candidates_.push_back({a, b});
-    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& x, const Candidate& y) {
-      return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-    });
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& x, const Candidate& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   }
 
   // Those candidates whose tubes have come together. Whether there are any.
@@ -504,22 +503,21 @@ class DryFrictionTerm : public ForceTerm {
     of_second_.sort_in(elements_.size(), contacts_.size(), [&](std::size_t k) { return whole(k, contacts_[k].b); });
     for (Candidate& c : candidates_) {
       const auto contacts = of_first_.of(c.a);
-      c.together = std::any_of(contacts.begin(), contacts.end(), [&](int k) {
-        return are_one(contacts_[static_cast<std::size_t>(k)], c);
-      });
+      c.together = std::any_of(contacts.begin(), contacts.end(),
+                               [&](int k) { return are_one(contacts_[static_cast<std::size_t>(k)], c); });
     }
   }
 
   DryFriction law_;
-  std::vector<int> tube_begin_;  // of the scene
+  std::vector<int> tube_begin_;  // first elements of the scene's tubes
   double stiffness_ = 0, damping_ = 0;
   std::vector<Element> elements_;
   TermState remembered_;  // until the next list
   std::vector<Contact> contacts_;
-  std::vector<Candidate> candidates_;  // by a, then b
-  std::vector<Frame> frames_;  // of the elements, in the state of the evaluation
-  std::vector<Now> now_;       // of the contacts, likewise
-  Rows of_first_, of_second_;  // contacts by a and by b
+  std::vector<Candidate> candidates_;  // sorted by a, then b
+  std::vector<Frame> frames_;          // frames of the elements in the state of the evaluation
+  std::vector<Now> now_;               // state of the contacts, likewise
+  Rows of_first_, of_second_;          // contacts by a and by b
 };
 
 }  // namespace

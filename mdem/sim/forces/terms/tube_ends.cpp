@@ -132,8 +132,8 @@ class TubeEnds : public ForceTerm {
   }
 
   std::vector<EndContact> contacts_;
-  std::vector<Joint> joints_;  // of the scene
-  std::vector<Joint> here_;    // of this process, by its own numbers of elements
+  std::vector<Joint> joints_;  // joints of the scene
+  std::vector<Joint> here_;    // joints of this process, by its own numbers of elements
 };
 
 }  // namespace

@@ -80,9 +80,10 @@ double error_of(const Simulation& s) {
 
 TEST(Stiffness, OfBonds) {
   EXPECT_LT(error_of(simulation(bundle(), {})), 1e-9);
-  // Inside of the window, at its edges and beyond them.
-  for (const double disorder : {0.003, 0.03, 0.1})
-    EXPECT_LT(error_of(simulation(bundle(1.72, disorder, test::anharmonic_bond()), {})), 1e-7) << disorder;
+  // Inside of the window, at its edges and beyond them; without and with a law of stretch beyond it.
+  for (const BondStiffness& bond : {test::anharmonic_bond(), test::pulled_bond()})
+    for (const double disorder : {0.003, 0.03, 0.1})
+      EXPECT_LT(error_of(simulation(bundle(1.72, disorder, bond), {})), disorder < 0.01 ? 1e-8 : 1e-7) << disorder;
 }
 
 // The polynomials of the table have steps in their second derivative where they meet, of 1e-7 of the largest one.

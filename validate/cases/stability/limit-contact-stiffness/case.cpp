@@ -20,7 +20,7 @@ struct Series {
   std::size_t set;  // of Case::sets
   bool paper;
   double length;                // of an element, over the set's
-  std::vector<double> factors;  // of the contact's energy
+  std::vector<double> factors;  // factors of the contact's energy
   std::string name;
 };
 

@@ -50,7 +50,7 @@ class RigidTubes {
     engine.compute(topology_, in_, list, state_, forces_);
   }
   double energy() const { return forces_.energy.vdw; }
-  Vector3 force() const {  // on the second tube
+  Vector3 force() const {  // force on the second tube
     Vector3 sum = Vector3::Zero();
     for (int e = elements_; e < 2 * elements_; ++e) sum += forces_.force[static_cast<std::size_t>(e)];
     return sum;

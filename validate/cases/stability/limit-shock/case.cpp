@@ -14,8 +14,8 @@
 namespace ropewalk::validate::twist_shock {
 namespace {
 
-constexpr double wall_shear = 0.02;        // by the whole moment: twist per length times radius
-constexpr double limit = 0.25;             // the default of limits.shock
+constexpr double wall_shear = 0.02;  // shear of the wall under the whole moment: twist per length times radius
+constexpr double limit = 0.25;       // the default of limits.shock
 constexpr double least = 0.6, most = 1.2;  // reached, over the estimate
 
 struct Load {
@@ -110,7 +110,7 @@ CaseResult run(const CaseContext& context) {
   ChartLine marks = model_points("runs", {}, {});
   std::vector<std::string> labels;
   double low = 1e9, high = 0;
-  // By what the program expects of them.
+  // The shocks that the program expects.
   for (const auto& [tubes, elements, expected] :
        {std::tuple{7, 30, 0.05}, std::tuple{7, 30, 0.2}, std::tuple{7, 60, 0.05}, std::tuple{7, 60, 0.2},
         std::tuple{7, 60, 0.7}, std::tuple{7, 120, 0.2}, std::tuple{7, 120, 0.7}, std::tuple{19, 60, 0.2}}) {

@@ -23,8 +23,8 @@ constexpr double relaxing_time = 100;                    // ps, as in the scene
 
 // Rigid tubes, laid one after another.
 struct Film {
-  std::vector<FilmTube> tubes;  // in the order of laying
-  int elements = 0;             // of each
+  std::vector<FilmTube> tubes;  // sorted by the order of laying
+  int elements = 0;             // elements of each tube
   double element_length = 0, box = 0;
 
   double length() const { return elements * element_length; }
@@ -82,7 +82,7 @@ Film flattened(Film film) {
 // --- rigid tubes ---
 
 struct Thresholds {
-  std::vector<double> stacked, crossing;  // of each film
+  std::vector<double> stacked, crossing;  // threshold of each film
 };
 
 struct MeanOf {
@@ -218,7 +218,7 @@ CaseResult run(const CaseContext& context) {
                         integral.crossed_well().distance, 1e-3, "nm", "place of the minimum");
   const std::vector<double> lengths = {66, 250, 1000, 2000, 4000};
   std::vector<Thresholds> all;
-  std::vector<double> stacks, crosses;  // of long tubes
+  std::vector<double> stacks, crosses;  // thresholds of long tubes
   for (const double length : lengths) {
     if (context.progress) context.progress(fmt::format("rigid tubes of {} nm", length));
     const bool is_long = length >= 1000;

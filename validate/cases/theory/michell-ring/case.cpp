@@ -33,7 +33,7 @@ class TwistedRing {
   }
 
  private:
-  using Moves = std::array<Vector6, 3>;  // of the elements -1, 0, 1, each in its own cylinder frame
+  using Moves = std::array<Vector6, 3>;  // moves of the elements -1, 0, 1, each in its own cylinder frame
 
   // Force and torque on element 0.
   Vector6 load(const Moves& moves) const {

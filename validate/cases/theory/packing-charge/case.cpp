@@ -43,7 +43,7 @@ double ring_energy(const LineContact& law, double radius, double rate, double an
 
 struct Ring {
   double tubes = 0;   // number that fits around the ring in contact, not rounded
-  double energy = 0;  // of each contact, eV/nm
+  double energy = 0;  // energy of each contact, eV/nm
   // Circumference in spacings, by the chords of a polygon: an untwisted rope then has no curvature.
   double around() const { return units::pi / std::sin(units::pi / tubes); }
 };

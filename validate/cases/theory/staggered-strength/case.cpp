@@ -14,7 +14,7 @@ namespace ropewalk::validate::staggered_strength {
 namespace {
 
 // Fixed beforehand.
-constexpr double tolerance = 0.02;  // of the force
+constexpr double tolerance = 0.02;  // relative to the force
 constexpr int beyond = 10;          // elements of each tube outside of the overlap
 constexpr double friction = 20;     // pN/nm, axial
 constexpr double breaks_at = 1e-3;  // strain

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "io/bath_words.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -354,6 +355,34 @@ TEST(DryFriction, TheLogTellsItsLossesFromThoseOfDamping) {
   EXPECT_THAT(damping_words(row), HasSubstr("which atoms do not have"));
 }
 
+// Tubes that rub in a bath are colder than it, by as much as the run says at its end.
+TEST(DryFriction, ABathSaysWhatItDoesNotHold) {
+  constexpr double coupling = 0.1;
+  const auto log_with = [&](const std::string& friction) {
+    Scene scene = rope(friction, "duration_ps = 60\n",
+                       cold + "[start]\ntemperature_K = 300\n[thermostat]\ntemperature_K = 300\n"
+                              "coupling_per_ps = 0.1\n");
+    MovingScene moving(scene);
+    std::vector<LogRow> log;
+    while (moving.simulation.time() < 60) {
+      moving.simulation.steps(20);
+      log.push_back(moving.row());
+    }
+    return log;
+  };
+  EXPECT_EQ(bath_words(log_with("[[friction]]\nend_strength_pN = 0.001\n"), coupling), "");
+  const std::vector<LogRow> log = log_with("[[friction]]\nstrength_pN_per_nm = 5\nelastic_slip_nm = 0.003\n");
+  const std::string words = bath_words(log, coupling);
+  const auto at = words.find("at about ");
+  ASSERT_NE(at, std::string::npos) << words;
+  double held = 0;
+  for (std::size_t k = log.size() / 2; k < log.size(); ++k)
+    held += log[k]["kinetic_eV"] / static_cast<double>(log.size() - log.size() / 2);
+  held /= 3 * 70 * units::boltzmann * 300;
+  EXPECT_LT(held, 0.95);
+  EXPECT_NEAR(std::stod(words.substr(at + 9)) / 100, held, 0.06);
+}
+
 TEST_P(FrictionLaw, SameBitsOnAnyThreadsAndAfterResume) {
   Scene scene = rope(
       "[[friction]]\nstrength_pN_per_nm = 10\nspin_strength_pN_per_nm = 10\nend_strength_pN = 5\nelastic_slip_nm = "
@@ -421,7 +450,7 @@ TEST(DryFriction, BadOnesAreRefused) {
               HasSubstr("claims all pairs of types, as [[friction]] of line 6; put both into one table"));
   EXPECT_THAT(message(axial + "elastic_slip_nm = 0\n"), HasSubstr("elastic_slip_nm"));
   EXPECT_THAT(message(axial, "[contact]\nlaw = \"none\"\n"), HasSubstr("contact.law"));
-  EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("[periodic]"));
+  EXPECT_THAT(message(axial, "[periodic]\n"), HasSubstr("periodic.twist_deg_per_nm"));
   EXPECT_THAT(log_header(), HasSubstr(",friction_eV"));
 }
 

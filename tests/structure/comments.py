@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Comments are read by themselves: one that begins with of, from, by, in or on and has no verb needs the identifier before it.
+
+    tests/structure/comments.py SOURCE_DIR            fails where a folder has more of them than below
+    tests/structure/comments.py SOURCE_DIR --print    all of them, to mend
+
+"double moved; // of both ends, nm" says less than "Displacement of both ends, nm". The numbers below are those that are left: a
+comment that is mended lowers its folder's, and none is added.
+"""
+import re
+import sys
+from pathlib import Path
+
+LEFT = {"mdem": 260, "calibrate": 0, "validate": 5}
+
+COMMENT = re.compile(r"(?:^|[^:\"'/])//+<?\s?(.*)$")
+GENITIVE = re.compile(r"(?:[Oo]f|[Ff]rom|[Bb]y|[Ii]n|[Oo]n) [a-z]")
+# Words that are verbs in the comments of this tree, and endings that are hardly anything else.
+VERB = re.compile(r"\b(?:is|are|was|were|be|has|have|had|does|do|did|can|may|must|will|would|should|cannot|become|becomes|"
+                  r"gives?|takes?|keeps?|kept|stands?|lies?|needs?|says?|goes|go|makes?|made|holds?|held|acts?|reads?|writes?|"
+                  r"counts?|stays?|starts?|begins?|ends?|moves?|turns?|follows?|belongs?|costs?|differs?|decides?|knows?|"
+                  r"leaves?|lets?|puts?|sets?|shows?|sums?|tells?|uses?|depends?|equals?|falls?|rises?|grows?|comes?|works?)\b")
+
+
+def comments_of(text):
+    """(line, comment): each block of comment lines is one, each trailing comment is one."""
+    found, open_at = [], None
+    for number, line in enumerate(text.splitlines(), 1):
+        match = COMMENT.search(line)
+        if not match:
+            open_at = None
+            continue
+        alone = line.lstrip().startswith("//")
+        trailing_goes_on = open_at is not None and alone and line.index("//") == open_at
+        if trailing_goes_on and found:
+            found[-1][1] += " " + match[1]
+        else:
+            found.append([number, match[1]])
+        open_at = line.index("//")
+    return found
+
+
+def main():
+    source = Path(sys.argv[1])
+    wrong = []
+    for folder, left in LEFT.items():
+        found = []
+        for path in sorted((source / folder).rglob("*")):
+            if path.suffix not in (".hpp", ".cpp", ".h"):
+                continue
+            for line, text in comments_of(path.read_text()):
+                if GENITIVE.match(text) and not VERB.search(text):
+                    found.append(f"{path.relative_to(source)}:{line}: {text}")
+        if "--print" in sys.argv:
+            print(*found, sep="\n")
+            print(f"{folder}: {len(found)}")
+        elif len(found) > left:
+            wrong.append(f"{folder}: {len(found)} comments begin with of, from, by, in or on and have no verb, {left} were left: "
+                         "give each new one its noun (--print lists them), or lower the number in this file")
+    print(*wrong, sep="\n", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
