@@ -118,9 +118,9 @@ std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& a
   refuse_refined(dir);
   check_finer_directory(dir, asked, true);
   DirectoryLock lock(dir.path);
-  ResumePoint point = find_resume_point(dir);
   remove_run_parts(dir);
   check_log_header(dir.log());
+  ResumePoint point = find_resume_point(dir);
   refuse_other_forces(point.checkpoint.origin, asked);
   use_instructions_of(point.checkpoint.origin, asked.instructions, listener);
   const Scene scene = read_run_scene(dir);

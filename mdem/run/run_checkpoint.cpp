@@ -202,12 +202,17 @@ std::vector<StoredCheckpoint> read_until(const RunDirectory& dir,
 
 std::string id_of_program() { return fmt::format("{} ({})", version, git_id); }
 
-// That wrote a checkpoint of another format, as the manifest has it; empty: the checkpoint has the format of this
-// one.
-std::string other_version(const RunDirectory& dir) {
+enum class Format { this_one, another, damaged };
+
+Format format_of_checkpoint(const std::string& path) {
   constexpr std::size_t number = 20;  // of "ROPEWALK-CHECKPOINT "
-  const std::string begin = read_file(dir.checkpoint()).substr(0, std::string(title).size());
-  if (begin.substr(0, number) != std::string(title).substr(0, number) || begin == title) return "";
+  std::string begin(std::strlen(title), '\0');
+  begin.resize(read_some(path, opened_to_read(path).get(), begin.data(), begin.size()));
+  if (begin == title) return Format::this_one;
+  return begin.substr(0, number) == std::string(title).substr(0, number) ? Format::another : Format::damaged;
+}
+
+std::string version_of_run(const RunDirectory& dir) {
   try {
     const Manifest m = read_manifest(dir.manifest());
     return fmt::format("{} ({})", m.version, m.git_id);
@@ -219,14 +224,7 @@ std::string other_version(const RunDirectory& dir) {
 void refuse_without_checkpoint(const RunDirectory& dir, const std::vector<StoredCheckpoint>& all) {
   for (const StoredCheckpoint& s : all)
     if (s.content) return;
-  if (all.empty()) refuse_without_checkpoint(dir);
-  if (const std::string version = other_version(dir); !version.empty())
-    throw InputError(
-        {dir.checkpoint(), 0, ""},
-        fmt::format("was written by ropewalk {}, and this is {}, which has other checkpoints", version,
-                    id_of_program()),
-        "finish the run with that version, or begin a scene with its last state: file = \"final.csv\" in "
-        "[state]");
+  refuse_without_checkpoint(dir);
   throw InputError({dir.checkpoint(), 0, ""}, "is damaged", "start the run anew with `ropewalk run`");
 }
 
@@ -259,6 +257,20 @@ FileMark whole_frames(const RunDirectory& dir, std::uint64_t most) {
 void refuse_without_checkpoint(const RunDirectory& dir) {
   if (!has_checkpoint(dir))
     throw InputError({dir.checkpoint(), 0, ""}, "there is no checkpoint", "start the run with `ropewalk run`");
+  bool another = false;
+  for (const std::string& path : {dir.checkpoint(), dir.checkpoint_before()}) {
+    if (!fs::exists(path)) continue;
+    const Format format = format_of_checkpoint(path);
+    if (format == Format::this_one) return;
+    another = another || format == Format::another;
+  }
+  if (another)
+    throw InputError(
+        {dir.checkpoint(), 0, ""},
+        fmt::format("was written by ropewalk {}, and this is {}, which has other checkpoints", version_of_run(dir),
+                    id_of_program()),
+        "finish the run with that version, or begin a scene with its last state: file = \"final.csv\" in "
+        "[state]");
 }
 
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene) {

@@ -52,7 +52,7 @@ struct RunCheckpoint {
 // The one that was there before is kept as checkpoint-before.bin.
 void write_checkpoint(const RunDirectory& dir, const RunCheckpoint& checkpoint);
 
-// Throws InputError where there is none; one that is there may be damaged.
+// Throws InputError where there is none of this version; one that is there may be damaged.
 void refuse_without_checkpoint(const RunDirectory& dir);
 
 // The newest that is whole. Throws InputError where there is none.

@@ -897,7 +897,7 @@ TEST_F(Cli, BlowUpStopsWithAWrittenState) {
        "[twist]\napplication = \"tangential\"\nmoment_nN_nm = 20000\nrate_nN_nm_per_ps = 50000\nhold_ps = 2\n");
   const Outcome o = run("run s.toml --out d");
   EXPECT_EQ(o.code, 3);
-  EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, element [0-9]+"))) << o.err;
+  EXPECT_TRUE(std::regex_search(o.err, std::regex("step [0-9]+, tube [0-9]+, element [0-9]+"))) << o.err;
   EXPECT_TRUE(fs::exists(dir / "d/failed-state.csv"));
   EXPECT_EQ(Json::parse(slurp(dir / "d/manifest.json")).at("status"), "failed");
   // The written state can be read again, and has what the run ended by.
