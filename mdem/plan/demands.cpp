@@ -26,6 +26,12 @@ bool stand_upright(const State& s) {
   return sum > 0.5 * static_cast<double>(s.size());
 }
 
+// Curvature at the ends of a tube whose ends are kept upright and lie `aside` of one another: a beam under tension.
+double curvature_aside(double aside, double length, double tension, double bend) {
+  const double k = std::sqrt(std::max(0.0, tension) / bend), x = 0.5 * k * length;
+  return x > 0.01 ? 0.5 * aside * k * k / (x / std::tanh(x) - 1) : 6 * aside / (length * length);
+}
+
 double helix(double radius, double winding) {
   const double slope = radius * winding;
   return slope * winding / (1 + slope * slope);
@@ -67,6 +73,7 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
     for (std::size_t axis = 0; axis < 6; ++axis) loads_[end][axis] = load_of_each(drives_, end, axis);
   turned_apart_ = moved_apart(drives_, LoadEffect::about_z);
   drawn_apart_ = moved_apart(drives_, LoadEffect::z);
+  for (std::size_t axis = 0; axis < moved_aside_.size(); ++axis) moved_aside_[axis] = moved_apart(drives_, axis);
   for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
   period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
   rope_radius_ = tubes_ > 1 ? rope_radius_of(p) : 0.0;
@@ -173,9 +180,12 @@ Demands DemandsAhead::at(double time) const {
   // As the ends keep it; without them, as it starts.
   const double more = turned(time), winding = winding_ + more;
   const double twist = twist_.farthest(more);
+  const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
+  double stretched = 0;  // by the way aside
   if (length_kept_) {
-    const double drawn = drawn_apart_.value(time) / period_,
+    const double drawn = std::hypot(1 + drawn_apart_.value(time) / period_, aside / period_) - 1,
                  along = 1 + (drawn < 0 && tubes_ > 0 ? std::max(drawn, -column_) : drawn);
+    stretched = std::max(0.0, drawn);
     const double outer = std::hypot(along, rope_radius_ * winding) / std::hypot(1, rope_radius_ * winding_) - 1;
     const double strain = std::max(strain_.farthest(along - 1), strain_.farthest(outer));
     add({winding, twist, strain, bond_.stretch * std::max(0.0, outer)}, out);
@@ -202,6 +212,8 @@ Demands DemandsAhead::at(double time) const {
       if (is_moved(d.does, axis)) bent += std::fabs(d.does.axes[axis].course.value(time));
   if (!upright_) force = std::hypot(force, sideways(LoadEffect::z, time));
   out.curvature += bent / length_ + warm_curvature_ + bent_;
+  if (keeps_tilt_ && aside > 0)
+    out.curvature += curvature_aside(aside, length_, bond_.stretch * stretched, bond_.bend);
   out.strain += rope_radius_ * bent / length_;
   out.twist += warm_twist_;
   if (const double moment = force * length_ + std::hypot(sideways(3, time), sideways(4, time)); begun && moment > 0)

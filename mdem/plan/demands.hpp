@@ -51,6 +51,7 @@ class DemandsAhead {
   EndDrives drives_;
   std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
   Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
+  std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
   std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
   bool length_kept_ = false, keeps_tilt_ = false, upright_ = true;

@@ -137,6 +137,21 @@ TEST(Demands, OfASliceThatIsDrawnOutAreKnown) {
 // One couple in three ways, on a rope that begins wound to either side. Runs under 20 nN nm, ramped in 50 ps, pass
 // a wall twist of 0.015 at 10.3 ps where the start of 1 degree/nm has the hand of the couple, at 14.3 ps where it
 // has not; the couple alone has it at 17.9 ps.
+// Ends that a grip moves aside draw the tubes out and bend them at the clamps, held in z or free to come nearer.
+TEST(Demands, OfEndsThatAreMovedAsideAreKnown) {
+  const std::string lower = "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n",
+                    aside = "x = { displacement_nm = [[0, 0], [100, 3]] }\n",
+                    y = "y = { displacement_nm = [[0, 0], [100, 4]] }\n";
+  const Ahead held(lower + aside), both(lower + aside + y), freed(lower + "z = \"free\"\n" + aside);
+  const double length = free_length(held.scene, held.p.topology, 0);
+  EXPECT_NEAR(held.demands.at(100).strain, std::hypot(1, 3 / length) - 1, 1e-6);
+  EXPECT_NEAR(both.demands.at(100).strain, std::hypot(1, 5 / length) - 1, 1e-6);
+  EXPECT_NEAR(freed.demands.at(100).strain, 0, 1e-6);
+  EXPECT_NEAR(freed.demands.at(100).curvature, 6 * 3 / (length * length), 1e-6) << "a beam whose ends stay upright";
+  EXPECT_GT(held.demands.at(100).curvature, freed.demands.at(100).curvature);
+  EXPECT_THAT(Ahead(lower + aside + "[limits]\nstrain = 0.003\n").notes(), HasSubstr("may bring strain to 0.00"));
+}
+
 TEST(Demands, OfACoupleAreThoseOfTheTubeThatBearsIt) {
   for (const double start : {-1.0, 0.0, 1.0}) {
     const std::string wound = fmt::format("[start]\ntwist_deg_per_nm = {}\n", start);
