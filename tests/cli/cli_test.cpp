@@ -1191,7 +1191,7 @@ hold_ps = 10
   const Outcome table = run("errors r --quiet");
   ASSERT_EQ(table.code, 0);
   EXPECT_EQ(fs::last_write_time(dir / "r/errors/GJ-plus/log.csv"), made);
-  EXPECT_NE(table.out.find("of the parameters alone"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("from the parameters alone"), std::string::npos) << table.out;
   // The twist energy still moves in the last rows by more than the error of the fit: no digit beyond that is
   // printed.
   EXPECT_GT(twist.at("moves_by").get<double>(), 1.2 * twist.at("standard_error").get<double>());
