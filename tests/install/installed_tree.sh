@@ -114,6 +114,7 @@ elements = "all"
 growth_nN_per_nm = 1e-3
 [run]
 duration_ps = 2
+time_step_fs = 20
 SCENE
 own_parts/my-ropewalk run four.toml --out four --quiet > said || fail "ropewalk with four parts of one's own: $(cat said)"
 own_parts/my-ropewalk help trap | grep -q 'stiffness_nN_per_nm' || fail "the force term of one's own has no help"
@@ -132,7 +133,7 @@ bound = sum(bead(math.dist(a, b)) for a in places[0] for b in places[1])
 end = log[-1]
 for name, found, wanted in (("trap", float(end["trap_eV"]), trapped), ("vdw", float(end["vdw_eV"]), bound)):
     assert wanted != 0 and abs(found / wanted - 1) < 1e-4, (name, found, wanted)
-assert abs(float(end["balance_eV"])) < 1e-3 * abs(float(end["work_eV"])), end["balance_eV"]
+assert abs(float(end["balance_eV"])) < 1e-3 * float(end["kinetic_eV"]), end["balance_eV"]
 SCRIPT
 own_parts/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/dev/null
 grep -q "$PWD/own_parts/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
