@@ -145,7 +145,7 @@ void add_check(CLI::App& app, Verbs& v) {
       "tables of its scene, or by a finer model");
   c->add_option("scene", v.check.path, "Scene file (TOML), or the directory of a finished run")->required();
   c->add_flag("--accuracy", v.check.accuracy,
-              "Of a run: go on for a stretch with its model and with a finer one, and say how far it is off");
+              "Of a run: continue it with its own model and with a finer one, and print how far they differ");
   c->add_option("--stretch", v.check.stretch, "With --accuracy: ps that both models go on")
       ->capture_default_str()
       ->check(number_within(Bounds::positive()));
@@ -232,7 +232,7 @@ void add_compare(CLI::App& app, Verbs& v) {
               "of --x at that torque")
       ->excludes("--tensile");
   c->add_option("--yarn-diameter-um", v.compare.yarn_diameter_um,
-                "With --tensile: turns per metre of a yarn so thick, with the twist angle of each run")
+                "With --tensile: add turns per metre, of a yarn of this diameter with the twist angle of each run")
       ->check(number_within(Bounds::positive()))
       ->needs("--tensile");
   c->add_flag("--log", v.compare.log, "Runs: logarithmic vertical axis");
@@ -369,7 +369,8 @@ void add_atoms(CLI::App& app, Verbs& v) {
                     "A limit that the run has passed: the place where it did so first. The run is stepped again to "
                     "that moment where that takes less than a minute; else the last frame before it is taken")
           ->excludes(frame);
-  c->add_flag("--step-again", v.atoms.step_again, "With --at: step the run again, however long it takes")->needs(at);
+  c->add_flag("--step-again", v.atoms.step_again, "With --at: step the run again, however long it takes")
+      ->needs(at);
   c->add_option("--length", v.atoms.length, "With --at: diameter of that place, nm")
       ->capture_default_str()
       ->check(number_within(Bounds::range(1, 1000)))

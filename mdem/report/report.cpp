@@ -377,11 +377,11 @@ std::vector<Limit> limits(const Validity& v) {
   };
   return {{"Kinked", "kinked", limit(v.kink_curvature, "curvature beyond", " nm⁻¹"),
            "A real tube kinks there: its wall folds and it bends on at a fraction of the stiffness. Harmonic bonds "
-           "bend on elastically and overestimate the bending energy; the moment of anharmonic ones stays constant, "
-           "that of a tube falls by a third."},
+           "bend on elastically and overestimate the bending energy. With anharmonic bonds the moment stays "
+           "constant, while that of a tube falls by a third."},
           {"Overtwisted", "overtwisted", limit(v.twist_collapse, "radius times twist per length beyond", ""),
-           "The wall of a real tube collapses into a ribbon there. Harmonic bonds store more torsional "
-           "energy than the tube would; the torque of anharmonic ones stays constant, as that of a tube does."},
+           "The wall of a real tube collapses into a ribbon there. Harmonic bonds store more energy of twist than "
+           "the tube would. With anharmonic bonds the torque stays constant, as that of a tube does."},
           {"Overstretched", "overstretched", limit(v.largest_tension(), "strain beyond", ""),
            "In compression the wall of a real tube buckles there; in tension harmonic bonds overestimate the "
            "force."}};

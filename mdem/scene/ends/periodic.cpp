@@ -115,7 +115,8 @@ const KeyTable<PeriodicLoad>& periodic_table() {
                    "twist of the rope per length in time, [[ps, deg/nm], ...]; [[0, 0]]: none", read_twist)
            .of_pace(SceneKey::Pace::course),
        Key::custom("turns_per_m", "1/m", otherwise("[[0, 0], [100, 2000]]", "twist_deg_per_nm"),
-                   "instead: turns per metre of a yarn in time; the outermost tubes get the angle of its surface",
+                   "in place of twist_deg_per_nm: turns per metre of a yarn against time; the outermost tubes of "
+                   "the slice get the angle of its surface",
                    read_turns)
            .of_pace(SceneKey::Pace::course),
        Key::number("yarn_diameter_um", {"um", um}, Bounds::positive(1e6), &PeriodicLoad::yarn_diameter,

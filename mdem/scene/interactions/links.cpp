@@ -240,7 +240,7 @@ DriveKind links_drive() {
           },
           "energy of the links",
           {{"links_lost_eV", "eV",
-            "energy that broken links have lost since the start, less what links had as they formed",
+            "energy lost by links that broke since the start, minus the energy that links had when they formed",
             &TermAccount::lost},
            {"links_formed", "", "links at the start, and those that have formed since", &TermAccount::begun},
            {"links_broken", "", "links that have broken since the start", &TermAccount::events}}};

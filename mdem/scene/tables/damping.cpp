@@ -48,9 +48,9 @@ const KeyTable<Damping>& damping_table() {
   using Key = KeyOf<Damping>;
   static const KeyTable<Damping> table = {
       "damping",
-      "numerical damping, which atoms do not have: it brings a scene to rest. Where the way there counts, set the "
-      "contact "
-      "viscosity to 0 and take [[friction]] from = \"atoms\"; 0 switches a term off",
+      "numerical damping, which atoms do not have: it brings a scene to rest. Where the path counts and not only "
+      "the final state, set the contact viscosity to 0 and take [[friction]] from = \"atoms\"; 0 switches a term "
+      "off",
       {Key::number(
            per_length, {"eV ps/nm^3", 1}, viscosities(), [](auto& d) -> auto& { return d.contact.eta; }, standard(),
            "against sliding: force per length of contact and speed, between two tubes side by side"),

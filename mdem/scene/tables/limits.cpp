@@ -23,7 +23,8 @@ const std::array<Text, limit_count>& texts() {
       {otherwise("2", "a tenth of the speed of sound along the tube"), "speed of an element"},
       {otherwise("2.3", "where a tube of this diameter collapses"), "pressure of the contacts on a tube"},
       {standard("0.05"), "error of the energy balance over the energy that was converted"},
-      {standard("0.25"), "kinetic energy of a cold rope over its energy of twist under the whole moment"},
+      {standard("0.25"),
+       "kinetic energy of a cold rope, over the energy of twist that it has under the whole moment in the end"},
   }};
   return all;
 }
