@@ -114,7 +114,7 @@ void say_statics(const Scene& scene, const Simulation& simulation) {
                                     ? fmt::format("{:.2g} s each and {:.2g} MB for whether it is stable",
                                                   cost.stability_seconds, cost.decomposition_bytes / 1e6)
                                     : "the rope is too thick for the modes that tell whether it is stable";
-  fmt::print("about {:.2g} s in all, {:.2g} MB of memory; {}\n", seconds,
+  fmt::print("about {:.2g} s in all if each start is near rest, {:.2g} MB of memory; {}\n", seconds,
              10 + (cost.bytes + cost.decomposition_bytes) / 1e6, stability);
 }
 
