@@ -26,7 +26,7 @@ class AtomSource {
   virtual ~AtomSource() = default;
   // False at the end. Throws InputError where something is wrong.
   virtual bool next(AtomFrame& frame) = 0;
-  // Where the frame just read comes from: a file, or a name for messages.
+  // Source of the current frame: a file, or a name for messages.
   virtual const std::string& file() const = 0;
   virtual bool cut_off() const { return false; }     // the last frame was, and is left out
   virtual bool states_time() const { return true; }  // false: times are steps times the time step that was given

@@ -93,7 +93,7 @@ class Import {
     }
   }
 
-  // What LAMMPS has read is what was exported.
+  // Refuses files of LAMMPS that differ from those that the export wrote.
   void hold_to_export(const LammpsStart& began, bool accept_changes) const {
     for (const std::string& path : {files_.input(), files_.tubes(), files_.first_state()}) {
       const auto sum = began.sums.find(fs::path(path).filename().string());

@@ -13,7 +13,7 @@ std::string bath_words(const std::vector<LogRow>& log, double coupling) {
   const std::size_t from = log.size() / 2;
   const LogRow &first = log[from], &last = log.back();
   const auto grown = [&](const char* column) { return last[column] - first[column]; };
-  // What loads put in is not taken from the bath, nor is what the rope had stored.
+  // Work of the loads and energy that the rope had stored are dissipated too, and do not come from the bath.
   const double taken = std::min(grown("dissipated_eV") - grown("work_eV"), grown("thermostat_eV"));
   const double rate = taken / grown("time_ps");
   double kinetic = 0;

@@ -27,7 +27,7 @@ using Equilibria = std::vector<Equilibrium>;
 
 const char* name_of(Equilibrium::Stability stability);
 
-// From the stability on: as tables of states of rest have them.
+// Columns that all tables of states of rest share, stability first, and the cells of one state.
 std::vector<OutputColumn> rest_columns();
 std::string rest_cells(const Equilibrium& e);
 

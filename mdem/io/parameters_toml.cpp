@@ -387,7 +387,7 @@ std::string with_start_of_pull(const std::string& text, const std::string& path)
   if (missing.empty()) return text;
   std::size_t at = 0;
   for (int line = pull.line("force"); line > 1; --line) at = text.find('\n', at) + 1;
-  // Where the table is not written as one, all of the set is written anew.
+  // A pull that is written with dotted keys has no place for new lines: the whole set is written anew.
   if (text.compare(at, 5, "force") != 0) return parameters_text(set, "");
   return text.substr(0, at) + missing + text.substr(at);
 }

@@ -33,7 +33,7 @@ double bending_moment(const LogRow& r) {
                    std::hypot(r["torque_lower_x_nN_nm"], r["torque_lower_y_nN_nm"]));
 }
 
-// Of a rope that is bent rather than twisted or pulled: clamps have some moment in any test.
+// Adds the bending moment, only if the rope is bent and not twisted or pulled: clamps have some moment in any test.
 void add_bending(const std::vector<LogRow>& log, RunResults& r) {
   const double most = largest(log, log.size(), bending_moment);
   if (!(most > twisted_from) || largest(log, log.size(), torque_of(log)) > bent_beside * most) return;

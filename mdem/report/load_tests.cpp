@@ -39,7 +39,7 @@ Mean mean_at(const LoadTestGroup& group, const std::string& x) {
   return mean_of(group.tests, [&](const LoadTest& t) { return t.at[x]; });
 }
 
-// Of a yarn with the angle of each run in the row that the horizontal axis is taken from.
+// Turns per metre of a yarn whose surface has the twist angle of the group, the mean over its replicates.
 Mean turns_per_m(const LoadTestKind& kind, const LoadTestGroup& group) {
   return mean_of(group.tests, [&](const LoadTest& t) {
     return 1e9 * yarn_turns(t.at["beta_deg"] * units::degree, kind.yarn_diameter);

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr const char* title = "ROPEWALK-CHECKPOINT 9 ";
 constexpr std::size_t hash_length = 16, block_size = 1 << 20;
 
-// As many of these bytes as the file has from here on.
+// Reads up to `count` bytes; returns how many there were before the end of the file.
 std::size_t read_some(const std::string& path, int file, char* to, std::size_t count) {
   std::size_t have = 0;
   while (have < count) {
