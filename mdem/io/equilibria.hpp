@@ -27,7 +27,7 @@ using Equilibria = std::vector<Equilibrium>;
 
 const char* name_of(Equilibrium::Stability stability);
 
-// Columns that all tables of states of rest share, stability first, and the cells of one state.
+// Columns that all tables of states of rest share, from the stability on; below, the cells of one state in them.
 std::vector<OutputColumn> rest_columns();
 std::string rest_cells(const Equilibrium& e);
 

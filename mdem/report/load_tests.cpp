@@ -46,7 +46,7 @@ Mean turns_per_m(const LoadTestKind& kind, const LoadTestGroup& group) {
   });
 }
 
-// Of the replicate that passed a limit first.
+// Limits that the replicates of a group passed, one replicate after the other. first_limit() finds the earliest.
 std::vector<LimitRecord> earliest_limits(const LoadTestGroup& group) {
   std::vector<LimitRecord> all;
   for (const LoadTest& t : group.tests) all.insert(all.end(), t.limits.begin(), t.limits.end());

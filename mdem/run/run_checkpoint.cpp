@@ -82,7 +82,7 @@ class Writer {
   std::string small_;
 };
 
-// Of the bytes of an open file from here to its end.
+// Reads numbers from the bytes between the present place of an open file and its end.
 class Reader {
  public:
   Reader(const std::string& path, int file, std::uint64_t bytes) : path_(path), file_(file), left_(bytes) {}

@@ -44,7 +44,7 @@ void read_tension(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   for (Schedule::Point& p : load.tension) p.value *= units::nN_nm;
 }
 
-// Of the angle of a yarn's surface.
+// Tangent of the angle of a yarn's surface, tan(beta) = pi d T.
 double slope(double turns, double diameter) { return units::pi * diameter * turns; }
 
 void check_turns(const TomlTable& t, const PeriodicLoad& load) {

@@ -68,7 +68,7 @@ Modes modes_of(const Tangent& tangent, const Reduction& reduction, const ModeSea
 // The elements in the order of the decomposition; those of a slice without its images.
 std::vector<int> elimination_order(const Topology& topology, const State& state);
 
-// Of the decomposition, by the elements within reach of one another; before it is tried.
+// Memory and operations that the decomposition will take, by which elements are within reach of one another.
 SlabCost cost_of_decomposition(const Simulation& simulation);
 
 }  // namespace ropewalk

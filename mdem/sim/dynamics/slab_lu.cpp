@@ -37,7 +37,7 @@ std::vector<Index> slab_ends(const std::vector<Index>& farthest) {
   std::vector<Index> ends;
   Index begin = 0, end = 0, reach = 0;
   while (end < all) {
-    // As far as the slab before reaches, and at least one unknown with all that it reaches.
+    // A slab ends as far as the slab before it reaches. It has at least one unknown, with all that this one reaches.
     const Index next = std::max(reach, farthest[static_cast<std::size_t>(end)]) + 1;
     begin = end;
     end = std::min(next, all);

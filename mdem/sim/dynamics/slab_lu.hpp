@@ -13,10 +13,10 @@
 
 namespace ropewalk {
 
-// Where slabs end, from the farthest unknown that each unknown reaches, in either direction.
+// Ends of the slabs, each one past its last unknown, from the farthest unknown that each unknown reaches.
 std::vector<Eigen::Index> slab_ends(const std::vector<Eigen::Index>& farthest);
 
-// Of a decomposition with these slabs: numbers that are kept, and operations.
+// Cost of a decomposition with these slabs: numbers that are kept, and operations.
 struct SlabCost {
   double numbers = 0, operations = 0;
 };

@@ -53,7 +53,7 @@ class ForceTerms : private PairWork {
   std::vector<TermAccount> accounts() const;
   // ForceTerm::broken_bonds of the one that has some; null: none has.
   const std::vector<char>* broken_bonds() const;
-  // Of all terms, in the order of time: those since the start or since forget_events().
+  // Events of all terms since the start or since forget_events(), in the order of time.
   std::vector<TermEvent> events() const;
   void forget_events();
 

@@ -475,7 +475,7 @@ class DryFrictionTerm : public ForceTerm {
     const std::size_t before = contacts_.size();
     for (const Candidate& c : candidates_) {
       if (c.together || !c.begins) continue;
-      // Of two elements of a tube that are equally near, the first.
+      // If two elements of a tube are equally near, the contact is with the first.
       const bool second = contacts_.size() > before && contacts_.back().a == c.a && are_one(contacts_.back(), c);
       if (second) continue;
       Contact contact;
