@@ -55,7 +55,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
 struct PartComparison {
   TubePart part;
   long atoms = 0;                 // free ones
-  double bonds = 0, contact = 0;  // of the model; half of each contact with other parts
+  double bonds = 0, contact = 0;  // model's energies, eV; half of each contact with other parts
   double placed = 0, relaxed = 0;
   // The flattest section of the relaxed atoms: thickness over width, 1 for a round one.
   double flatness = 1;

@@ -270,7 +270,7 @@ class Import {
   std::int64_t marked_at_ = 0;
   bool told_of_account_ = false, at_rest_ = true;
   Forces force_;
-  std::vector<double> memory_;  // of the force terms, in the last state
+  std::vector<double> memory_;  // force terms' memory in the last state
   std::string log_;
   std::unique_ptr<NewFrames> frames_;
   long taken_ = 0;

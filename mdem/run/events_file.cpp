@@ -95,7 +95,7 @@ StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : 
                "bring the line back");
     return topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element);
   };
-  std::map<std::pair<int, int>, std::deque<std::size_t>> holding;  // by the elements that they join
+  std::map<std::pair<int, int>, std::deque<std::size_t>> holding;  // links by the elements that they join
   each_event(path, [&](CsvReader& csv, const std::string& what) {
     const double time = csv.finite_number(0, "time_ps");
     if (what == "tube broke") {

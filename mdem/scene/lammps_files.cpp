@@ -127,7 +127,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
-      if (key.name == std::string(sums_key) && !json.contains(sums_key)) return;  // of version 0.3.0
+      if (key.name == std::string(sums_key) && !json.contains(sums_key)) return;  // version 0.3.0 wrote none
       const Json& found = json.at(key.name);
       if (std::is_integral_v<std::decay_t<decltype(value)>> && !found.is_number_integer())
         throw InputError({path, 0, key.name}, "is no whole number", export_again);

@@ -70,7 +70,7 @@ struct LammpsScript {
   std::string law = "paper";
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
-  int types = 1;          // of tubes
+  int types = 1;          // number of tube types
   Vector3 low, high;      // the box; it grows with the elements, and never shrinks below this
   double skin = 0, reach = 0;
   int excluded_elements = 3;  // neighbours along any tube that contact skips, at least

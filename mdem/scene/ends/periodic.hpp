@@ -92,8 +92,8 @@ class PeriodicLoad : public Load {
   void lead(const Topology&, const When&, const Length& then, State&) const;
   void follow(int image, int original, double sign, const When&, const Length& then, State&) const;
 
-  Schedule schedule_;            // of tau, smoothed
-  Schedule stretched_, pulled_;  // of strain, smoothed, and of tension
+  Schedule schedule_;            // course of tau, smoothed
+  Schedule stretched_, pulled_;  // courses of strain, smoothed, and of tension
   EndElements ends_;
   double period_ = 0, reach_ = 0;  // nm
 };

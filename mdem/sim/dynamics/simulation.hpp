@@ -210,7 +210,7 @@ class Simulation {
   Stepping stepping_;
   std::vector<double> thermostat_variables_;
   std::vector<int> loaded_;                  // elements
-  std::vector<ConstraintImpulse> impulses_;  // of the last kick
+  std::vector<ConstraintImpulse> impulses_;  // impulses in the last kick
   std::vector<double> removed_;              // likewise, by terms in the kick, from each part
   Gauges gauges_;
   TubeParts parts_;
@@ -218,7 +218,7 @@ class Simulation {
   NeighbourList list_;
   std::int64_t list_age_ = 0;     // steps since the list was built
   std::vector<Change> changes_;   // since then, of cached_elements each
-  std::vector<Fastest> fastest_;  // in the last drift, likewise
+  std::vector<Fastest> fastest_;  // fastest elements in the last drift, of cached_elements each
   ForceEngine engine_;
   Forces forces_;                       // with the loads
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step

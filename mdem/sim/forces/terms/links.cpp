@@ -33,7 +33,7 @@ Axis axis_at(const Topology& topology, const State& state, int element) {
 // b is not within reach there.
 struct Facing {
   double on_b = 0;  // nm
-  Vector3 to_b;     // from axis to axis
+  Vector3 to_b;     // vector from axis to axis
 };
 bool faces(const Axis& a, const Axis& b, double s, double reach, Facing& out) {
   const Vector3 from_b = a.centre + s * a.along - b.centre;
@@ -478,8 +478,8 @@ class LinkTerm : public ForceTerm {
   double last_formed_ = 0;           // ps
   long begun_ = 0;                   // links that advance() has yet to count
   double given_ = 0;                 // eV, that links formed with; likewise
-  std::vector<ActingLink> acting_;   // in the order of the links
-  std::vector<LinkAction> actions_;  // of each of them
+  std::vector<ActingLink> acting_;   // acting ones, in the order of the links
+  std::vector<LinkAction> actions_;  // action of each of them
   Rows of_first_, of_second_;        // acting links by a and by b
 };
 
