@@ -29,6 +29,7 @@ struct EvaluatedState {
   BuiltScene built;
   Interaction interaction;
   Forces forces;
+  std::vector<int> broken;  // elements behind which tubes have broken
   std::string note;  // what the energy depends on and a state does not say; may be empty
 };
 // Throws InputError, which names the options of `ropewalk energy`.
