@@ -51,7 +51,7 @@ std::vector<int> own_places(const Topology& topology, const std::vector<int>& el
 
 double copy_reach(const Topology& topology, const Interaction& in, double skin) {
   constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
-  return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
+  return std::max({in.cutoff(), in.term_copies, longest_bond * topology.longest_element()}) + skin;
 }
 
 }  // namespace ropewalk

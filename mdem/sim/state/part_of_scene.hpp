@@ -17,7 +17,7 @@ State part_of_state(const State& scene, const std::vector<int>& number);
 std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements);
 
 // A process needs copies of all elements within this distance (nm) of its own ones. The distance covers the
-// contacts, with the skin of the neighbour list, and the other end of a bond.
+// contacts, with the skin of the neighbour list, the other end of a bond, and what force terms look at.
 double copy_reach(const Topology& topology, const Interaction& interaction, double skin);
 
 }  // namespace ropewalk
