@@ -34,6 +34,7 @@ void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& lis
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.files.log.bytes);
+  if (c.files.events.bytes > 0) copy(from.events(), to.events(), c.files.events.bytes);
   const FrameFormat format = format_of(from.frames());
   NewFrames(to.frames(format), format, 0, from.frames(), c.files.frames.bytes).replace();
   copy(from.manifest(), to.manifest(), all);
@@ -55,6 +56,9 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   start.strand_holes = groups.strand_holes;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
+  const bool others_break = std::any_of(scene.drives.begin(), scene.drives.end(),
+                                        [](const auto& drive) { return drive->table().name == "failure"; });
+  start.tubes_came_broken = !scene.memory.broken.empty() && !others_break;
   const RunDirectory here{"."};
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     start.parameters.push_back(fs::path(here.parameters(k)).filename().string());

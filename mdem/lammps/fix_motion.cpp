@@ -58,7 +58,7 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
     atom->add_callback(LMP::Atom::RESTART);
   }
   vector_flag = 1;
-  size_vector = lammps_row_numbers + 4 * static_cast<int>(model_->interaction.terms.size());
+  size_vector = lammps_row_numbers + lammps_numbers_of_term * static_cast<int>(model_->interaction.terms.size());
   global_freq = 1;
   extvector = 0;
   const auto* states = find_fix<FixStates>(lmp);
@@ -368,7 +368,7 @@ std::vector<double> FixMotion::energies() const {
     const std::vector<TermAccount> accounts = engine_->term_accounts();
     for (std::size_t k = 0; k < accounts.size(); ++k) {
       const TermAccount& a = accounts[k];
-      own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events});
+      own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events, a.begun});
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, own.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);

@@ -3,7 +3,7 @@
 //
 // Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
 // energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the
-// energy, the losses and the events of each force term (sim/forces/force_term.hpp, TermAccount).
+// energy, the losses, events and beginnings of each force term (sim/forces/force_term.hpp, TermAccount).
 #pragma once
 
 #include <array>

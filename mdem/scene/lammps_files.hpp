@@ -29,6 +29,7 @@ struct LammpsStart {
   std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
   double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
+  bool tubes_came_broken = false;                   // in its first state, and no others break
   std::vector<std::string> parameters;              // files, of each tube type
   std::map<std::string, std::string> sums;          // of the files that LAMMPS reads, by name; empty: an older export
 };
@@ -88,7 +89,8 @@ struct LammpsRow {
   std::vector<double> terms;          // eV, of each force term
   std::vector<TermAccount> accounts;  // likewise
 };
-inline constexpr int lammps_row_numbers = 10;  // without the step and the terms
+inline constexpr int lammps_row_numbers = 10;     // without the step and the terms
+inline constexpr int lammps_numbers_of_term = 5;  // energy, lost, drag, events, begun
 // A last line without its end, as after a kill, is left out.
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms = 0);
 

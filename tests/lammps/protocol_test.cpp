@@ -68,7 +68,14 @@ const std::vector<Protocol>& protocols() {
        1e-9},
       {"NoContact",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
-       "[[load]]\nkind = \"fix\"\nelements = [0]\n"}};
+       "[[load]]\nkind = \"fix\"\nelements = [0]\n"},
+      // A bath and a tether without contact, which both act through the engine.
+      {"BathWithoutContact",
+       "[contact]\nlaw = \"none\"\n[start]\ntemperature_K = 200\n[thermostat]\ntemperature_K = 300\n"
+       "coupling_per_ps = 2\nseed = 5\n[damping]\nbond_damping_per_ps = 0\n"
+       "[[tether]]\ntube = 1\nelements = [0]\nto_tube = 4\nto_elements = [-1]\nstiffness_nN_per_nm = 0.2\n"
+       "rest_nm = 10\n[[load]]\nkind = \"fix\"\nelements = [0]\n",
+       1e-9}};
   return all;
 }
 
@@ -109,7 +116,7 @@ TEST_F(ProtocolTest, HundredStepsAgree) {
       EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
       EXPECT_NEAR(row.heat, native.heat(), p.tolerance * std::fmax(1, native.heat()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
-      if (p.name == std::string("Thermostat")) {
+      if (p.name == std::string("Thermostat") || p.name == std::string("BathWithoutContact")) {
         EXPECT_GT(std::fabs(native.heat()), 1);
       }
     }
@@ -441,7 +448,7 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
   fs::remove(dir / "out/lammps.states");
   const Outcome o = lmp(1, "out", "'" ROPEWALK_LMP_PLUGIN "' -in in.rope -var steps 50", ROPEWALK_LMP_HOST);
   ASSERT_EQ(o.code, 0) << o.out << o.err;
-  for (const char* style : {"pair mdem/paper", "pair mdem/line", "bond mdem/vbond", "fix mdem/nve",
+  for (const char* style : {"pair mdem/paper", "pair mdem/line", "pair mdem/none", "bond mdem/vbond", "fix mdem/nve",
                             "fix mdem/relax", "fix mdem/damp", "fix mdem/grip", "fix mdem/states"})
     EXPECT_NE(o.out.find(std::string("plugin: ") + style + " for LAMMPS"), std::string::npos) << o.out;
   EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);

@@ -191,8 +191,6 @@ class TetherDrive : public Drive {
              interaction);
   }
   std::string why_not_lengthened() const override { return "a tether names elements by number"; }
-  std::string not_for_lammps() const override { return without_contact ? "tether (without contact)" : ""; }
-  bool without_contact = false;
 
  private:
   TetherEnd on(const Topology& topology, const TypedEnd& typed) const {
@@ -234,7 +232,6 @@ void check_ends(const TomlTable& t, const Scene& scene, TetherDrive& tether) {
     throw t.error("breaks_at_nm", fmt::format("is {:.4g} and not above rest_nm", tether.breaks_at),
                   "a tether breaks when it is stretched; raise it");
   tether.place = {scene.path, t.line(), "tether"};
-  tether.without_contact = scene.contact.law == "none";
 }
 
 const KeyTable<TetherDrive>& tether_table() {
