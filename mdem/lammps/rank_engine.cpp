@@ -340,6 +340,8 @@ void RankEngine::compute(bool energies) {
   // At the start of a run no time has passed; in a relaxation none does.
   std::optional<double> passed;
   if (!lmp_->update->setupflag) passed = model_->relax ? 0.0 : lmp_->update->dt;
+  state_.step = lmp_->update->ntimestep;
+  state_.time = model_->time_at(lmp_->update->ntimestep);
   evaluate(state_, {Parts::all, energies, passed}, forces_);
   contact_energy_known_ = energies;
   // At the start of a run LAMMPS writes forces before the first step.

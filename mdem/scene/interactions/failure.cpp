@@ -35,6 +35,7 @@
 #include "scene/scene.hpp"
 #include "scene/spacing.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
 namespace {
@@ -113,7 +114,8 @@ class TubeFailure : public ForceTerm {
 
   TermState memory() const override {
     TermState out;
-    for (const int element : own_among(all_)) out.push_back({element, {}});
+    for (const int element : all_)
+      if (owns_number(here_, element)) out.push_back({element, {}});
     return out;
   }
   // A bond is judged by those about it.
@@ -148,29 +150,15 @@ class TubeFailure : public ForceTerm {
     for (int t = 0; t < here_.tubes(); ++t) {
       const auto strain_of = law_.strains_of(here_.type_of(t));
       for (int i = here_.tube_begin[t]; i + 1 < here_.tube_begin[t + 1]; ++i)
-        limit_[static_cast<std::size_t>(i)] = strain_of(number(here_.original_of(i)));
+        limit_[static_cast<std::size_t>(i)] = strain_of(number_in_scene(here_, here_.original_of(i)));
     }
     broken_.assign(limit_.size(), 0);
   }
   void mark_broken() {
     broken_.assign(limit_.size(), 0);
     for (const int element : all_)
-      if (const int i = here(element); i >= 0)
+      if (const int i = place_of(here_, element); i >= 0)
         for (const int e : with_images(i)) broken_[static_cast<std::size_t>(e)] = 1;
-  }
-  // Of an element here its number in the scene, and back; -1: it is not here.
-  int number(int place) const { return here_.part ? here_.part->number[static_cast<std::size_t>(place)] : place; }
-  int here(int element) const {
-    if (!here_.part) return element;
-    const std::vector<int>& numbers = here_.part->number;
-    const auto at = std::lower_bound(numbers.begin(), numbers.end(), element);
-    return at != numbers.end() && *at == element ? static_cast<int>(at - numbers.begin()) : -1;
-  }
-  std::vector<int> own_among(const std::vector<int>& elements) const {
-    std::vector<int> own;
-    for (const int element : elements)
-      if (const int i = here(element); i >= 0 && here_.owns(i)) own.push_back(element);
-    return own;
   }
   bool ends_tube(int element) const {
     return element + 1 == scene_.tube_begin[static_cast<std::size_t>(scene_.tube_of(element)) + 1];
@@ -220,7 +208,7 @@ class TubeFailure : public ForceTerm {
     const std::vector<int> bonds = with_images(element);
     for (const int e : bonds) broken_[static_cast<std::size_t>(e)] = 1;
     // In the order of the elements, as a memory comes back.
-    const int in_scene = number(element);
+    const int in_scene = number_in_scene(here_, element);
     all_.insert(std::upper_bound(all_.begin(), all_.end(), in_scene), in_scene);
     tell(in_scene, state.time, state.position[i] + 0.5 * d);
     return static_cast<double>(bonds.size()) * bond_energy(type.bond, type.element_length, d,
