@@ -104,7 +104,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
 
 constexpr const char* readme =
     "Run:              lmp-ropewalk -in in.rope\n"
-    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
+    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope      (or, with SLURM: sbatch job.sh)\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
 // `run` divides steps with which its energy balance does not close, and LAMMPS keeps them.
@@ -146,15 +146,17 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.dissipated = s.dissipated();
   header.heat = s.heat();
   LammpsStart start = start_of(scene, s);
+  const LammpsScript script = script_of(scene, p, s);
   for (const auto& [path, content] :
        {std::pair{dir.tubes(), tubes_csv(p.topology)},
         std::pair{dir.first_state(),
                   state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory())},
-        std::pair{dir.input(), lammps_input(script_of(scene, p, s))}}) {
+        std::pair{dir.input(), lammps_input(script)}}) {
     start.sums[fs::path(path).filename().string()] = hash_hex(content);
     write_file_atomically(path, content);
   }
   write_file_atomically(dir.start(), start_json(start));
+  write_file_atomically(dir.job(), lammps_job(script, p.topology.elements()));
   write_file_atomically(dir.readme(), readme);
 }
 

@@ -105,13 +105,16 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  std::string lacking;
+  Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
-    if (lacking.empty()) lacking = drive->not_for_lammps();
-  if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
-  if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
-  if (!lacking.empty())
-    throw InputError(place_in(scene, lacking), "is not for LAMMPS", "run this scene with `ropewalk run`");
+    if (lacking.key.empty()) lacking = drive->not_for_lammps();
+  if (lacking.key.empty() && scene.run.stepping.runge_kutta)
+    lacking = {"run.integrator", "it evaluates forces once in a step"};
+  if (lacking.key.empty() && scene.run.solver != RunOptions::Solver::fire)
+    lacking = {"run.solver", "its ranks have no solver of linear systems"};
+  if (!lacking.key.empty())
+    throw InputError(place_in(scene, lacking.key), "is not for LAMMPS: " + lacking.reason,
+                     "run this scene with `ropewalk run`");
 }
 
 std::string start_json(const LammpsStart& start) {
@@ -249,6 +252,7 @@ std::string lammps_input(const LammpsScript& s) {
       "variable steps index {}\n"
       "variable last equal {}+${{steps}}\n"
       "variable every index {}\n"
+      "if \"$(is_defined(variable,wall)) == 1\" then \"timer timeout ${{wall}}\"  # seconds, or hours:minutes:seconds\n"
       "units lj\n"
       "atom_style hybrid sphere bond\n"
       "boundary m m m\n"
@@ -285,7 +289,36 @@ std::string lammps_input(const LammpsScript& s) {
       "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
       row_format(s.terms), row_title(s.terms));
+  // A relaxation ends where forces are small.
+  if (!s.relax) text += "if \"$(is_defined(variable,wall)) == 1 && $(step) < ${last}\" then \"quit 6\"\n";
   return text;
+}
+
+std::string lammps_job(const LammpsScript& s, int elements) {
+  // Above, ghosts and messages take more than they spare (mdem/lammps/README.md, Scaling).
+  const int fewest_of_a_rank = s.long_in_z ? 5000 : 20000, ranks = std::max(1, elements / fewest_of_a_rank);
+  return fmt::format(
+      "#!/bin/sh\n"
+      "# For SLURM. Submit it once, from this directory: sbatch job.sh. A job whose time is over submits the next one,\n"
+      "# which goes on from the last state. Then: ropewalk import .\n"
+      "#SBATCH --job-name=ropewalk\n"
+      "#SBATCH --ntasks={}\n"
+      "#SBATCH --time=24:00:00\n"
+      "#SBATCH --output=messages.txt\n"
+      "#SBATCH --open-mode=append\n"
+      "# Add --partition and --account as your cluster asks.\n"
+      "from=rope.state\n"
+      "[ -s lammps.states ] && from=lammps.states\n"
+      "before=$(wc -c lammps.states 2> /dev/null)\n"
+      "now=$(date +%s)\n"
+      "# A part of the time stays for the last state and the next job.\n"
+      "left=$((${{SLURM_JOB_END_TIME:-$((now + 86400))}} - now))\n"
+      "srun lmp-ropewalk -in in.rope -var from $from -var wall $((left - left / 20))\n"
+      "code=$?\n"
+      "[ $code = 6 ] || exit $code\n"
+      "[ \"$(wc -c lammps.states)\" != \"$before\" ] || {{ echo 'no step was taken: give the job more time'; exit 6; }}\n"
+      "exec sbatch job.sh\n",
+      ranks);
 }
 
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms) {

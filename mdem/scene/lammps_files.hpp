@@ -5,6 +5,7 @@
 //   tubes.csv     tubes of a kind after one another: how many, elements of each, type
 //   rope.state    the state and its forces (scene/lammps_states.hpp)
 //   in.rope       LAMMPS input
+//   job.sh        a job for SLURM that runs it
 //   lammps.states, lammps-rows.csv   what LAMMPS writes: states and energies
 #pragma once
 
@@ -44,6 +45,7 @@ struct LammpsDirectory {
   std::string first_state() const { return file("rope.state"); }
   std::string input() const { return file("in.rope"); }
   std::string readme() const { return file("README.txt"); }
+  std::string job() const { return file("job.sh"); }
   std::string states() const { return file("lammps.states"); }
   std::string rows() const { return file("lammps-rows.csv"); }
 };
@@ -80,6 +82,8 @@ struct LammpsScript {
   int terms = 0;  // force terms, each with its energy and its account in a row
 };
 std::string lammps_input(const LammpsScript& script);
+// A job for SLURM that runs it, and submits itself again where its time was too short.
+std::string lammps_job(const LammpsScript& script, int elements);
 
 // The numbers of one row of LAMMPS's energies, in the order of the file.
 struct LammpsRow {
