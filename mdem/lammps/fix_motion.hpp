@@ -3,7 +3,7 @@
 //
 // Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
 // energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the
-// energy, the losses and the events of each force term (sim/forces/force_term.hpp, TermAccount).
+// energy, the losses, events and beginnings of each force term (sim/forces/force_term.hpp, TermAccount).
 #pragma once
 
 #include <array>
@@ -38,6 +38,21 @@ class FixMotion : public LMP::Fix {
   void restart(char* bytes) override;
   int pack_forward_comm(int count, int* list, double* buffer, int, int*) override;
   void unpack_forward_comm(int count, int first, double* buffer) override;
+  void post_run() override;
+
+  // LAMMPS takes the memories of an element along wherever it takes the element.
+  ~FixMotion() override;
+  void grow_arrays(int atoms) override { memory_.resize(static_cast<std::size_t>(atoms)); }
+  void copy_arrays(int from, int to, int) override;
+  void set_arrays(int i) override { memory_of(i).clear(); }
+  int pack_exchange(int i, double* buffer) override;
+  int unpack_exchange(int i, double* buffer) override;
+  int pack_restart(int i, double* buffer) override;
+  void unpack_restart(int i, int part) override;
+  int size_restart(int i) override { return static_cast<int>(memory_of(i).size()) + 1; }
+  int maxsize_restart() override { return longest_ + 1; }
+  // What force terms have told on this rank since the last call, as a list of numbers.
+  std::vector<double> take_events();
 
  protected:
   void move(double dt);  // x += v dt, q <- exp(w dt) q
@@ -60,13 +75,24 @@ class FixMotion : public LMP::Fix {
   void check_elements();
   void check_masses();
   std::vector<double> energies() const;
+  std::vector<double>& memory_of(int i) { return memory_[static_cast<std::size_t>(i)]; }
+  void give_memory(const std::vector<double>& numbers);
+  void keep_memory();
+  void bring_memory();
+  void find_longest();
 
   State moved_;  // buffer of move()
   std::vector<double> row_;
   LMP::bigint row_step_ = -1;
-  // For a run that goes on: the skin of the list (nm; 0: as the engine chooses) and the memories of force terms.
-  double first_skin_ = 0;
-  std::vector<double> first_memory_;
+  double first_skin_ = 0;  // for a run that goes on: the skin of the list (nm; 0: as the engine chooses)
+  // Records of force terms, of each own element and each copy; up to date from before an exchange until the list is
+  // built. Lists of numbers as those of sim/forces/force_terms.hpp.
+  bool remembers_ = false;
+  std::vector<std::vector<double>> memory_;
+  int longest_ = 0;                            // of an element of any rank
+  int round_ = -1;                             // of the messages that bring them to copies; -1: these bring orientations
+  std::vector<double> accounts_;               // that the terms begin with
+  std::vector<double> untold_;                 // events of before the start
 };
 
 class FixNve : public FixMotion {

@@ -8,8 +8,8 @@
 // elements in every step would cost as much as the bonds.
 #pragma once
 
+#include <array>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -74,9 +74,13 @@ class RankEngine {
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
 
-  // The memories of all force terms, of all ranks; the first build begins with those that are set. All ranks.
-  std::vector<double> memory() const;
-  void set_memory(std::vector<double> memory) { first_memory_ = std::move(memory); }
+  // Of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the records of its
+  // own elements.
+  std::vector<double> memory() const { return engine_.terms().memory(); }
+  // For the next build: the records of all elements here, copies among them. At the first one the accounts as well.
+  void set_memory(std::vector<double> memory) { next_memory_ = std::move(memory); }
+  // What has happened on this rank since the last call.
+  std::vector<TermEvent> take_events();
 
   // Energies of this rank's pairs and bonds in the last evaluation.
   BondEnergy bond_energy() const;
@@ -104,13 +108,15 @@ class RankEngine {
   void complete_forces();  // adds the forces in LAMMPS's arrays to those of own elements
   const std::vector<Stretch>& shared();
   void evaluate(const State& state, const ForceOptions& options, Forces& out);
+  template <class F>
+  void or_refuse(const F& f);
 
   LMP::LAMMPS* lmp_;
   double** quaternions_ = nullptr;  // valid during a call only
   std::shared_ptr<const LammpsModel> model_;
   std::unique_ptr<AllRanks> ranks_;  // none where there is one rank
   RankMessages messages_;
-  std::optional<std::vector<double>> first_memory_;
+  std::vector<double> next_memory_;
   Topology topology_;
   State state_;
   std::vector<Stretch> own_, ghosts_;  // own ones short enough for the first cache

@@ -108,6 +108,7 @@ const std::vector<OutputFile>& run_files() {
       {"sections.csv", "coarsen", "radius, ovality and shear of the elements' atoms, means over the frames"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
+      {"job.sh", "export", "a job for SLURM that runs it"},
       {"rope.state", "export", "binary: the state where LAMMPS begins"},
       {"tubes.csv", "export", "tubes, by kind"},
       {"lammps.json", "export", "where the run stands"},

@@ -111,7 +111,7 @@ TEST_F(LammpsErrors, ShortGhostCutoffIsRefused) {
       script.replace(at, what.size(), by);
     ASSERT_GT(found, 0U) << what;
   };
-  replace_all("pair_style zero 2.034", "pair_style zero 0.5");
+  replace_all("pair_style mdem/none ${dir} ${forces}", "pair_style zero 0.5 nocoeff");
   replace_all("vel yes cutoff 2.184", "vel yes cutoff 0.6");
   spit(dir / "out/in.rope", script);
   for (const int ranks : {1, 2}) {

@@ -114,7 +114,11 @@ class PeriodicDrive : public Drive {
   void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
   Ends ends() const override { return Ends::endless; }
   std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
-  std::string not_for_lammps() const override { return "periodic"; }
+  NotForLammps not_for_lammps() const override {
+    return {"periodic",
+            "the images of a slice turn with its twist and move with its length, and those of LAMMPS's box do not; a "
+            "rope of ten periods between grips, whose middle is as a slice, takes ten times as long a step"};
+  }
 };
 
 }  // namespace ropewalk

@@ -33,9 +33,9 @@ std::size_t ForceEngine::bytes() const {
 }
 
 void ForceEngine::set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                             bool with_accounts) {
+                             bool goes_on) {
   use_terms(interaction);
-  terms_.set_memory(memory, elements, with_accounts);
+  terms_.set_memory(memory, elements, goes_on);
 }
 
 // A contact engine has listed the pairs of the terms that were there before.

@@ -107,9 +107,9 @@ class ForceEngine {
   void forget_events() { terms_.forget_events(); }
   // Goes on with the memories of another engine, for the same list.
   void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
-  // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.
+  // Goes on with these memories, ForceTerms::set_memory(). Throws std::runtime_error.
   void set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                  bool with_accounts = true);
+                  bool goes_on = false);
   // Makes the terms ready for a list that a state with this memory has had before.
   void prepare_again(const Topology& topology, const NeighbourList& list, const State& state) {
     terms_.prepare(topology, list, state, true);
