@@ -24,7 +24,7 @@ namespace {
 
 using namespace LMP::FixConst;
 
-constexpr int numbers_a_round = 31;  // of an element
+constexpr int numbers_a_round = 31;  // numbers of one element
 
 // Versions of LAMMPS have different names for the call that sends the values of a fix to ghosts.
 template <class Comm>

@@ -89,8 +89,8 @@ class FixMotion : public LMP::Fix {
   // built. Lists of numbers as those of sim/forces/force_terms.hpp.
   bool remembers_ = false;
   std::vector<std::vector<double>> memory_;
-  int longest_ = 0;                            // of an element of any rank
-  int round_ = -1;                             // of the messages that bring them to copies; -1: these bring orientations
+  int longest_ = 0;                            // longest memory of an element of any rank
+  int round_ = -1;                             // which message brings them to copies; -1: it brings orientations
   std::vector<double> accounts_;               // that the terms begin with
   std::vector<double> untold_;                 // events of before the start
 };

@@ -74,8 +74,8 @@ class RankEngine {
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
 
-  // Of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the records of its
-  // own elements.
+  // Memories of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the
+  // records of its own elements.
   std::vector<double> memory() const { return engine_.terms().memory(); }
   // For the next build: the records of all elements here, copies among them. At the first one the accounts as well.
   void set_memory(std::vector<double> memory) { next_memory_ = std::move(memory); }

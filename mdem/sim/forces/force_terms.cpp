@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t head = 3, numbers_of_event = 6;  // of a record; of an event before its word
+constexpr std::size_t head = 3, numbers_of_event = 6;  // numbers of a record's head; of an event before its word
 
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;

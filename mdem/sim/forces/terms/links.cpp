@@ -424,7 +424,7 @@ class LinkTerm : public ForceTerm {
  private:
   // nm: how far the elements of a link can be apart before it breaks, or may be where none breaks.
   double longest_link() const {
-    constexpr double unbreakable = 1;  // of stretch
+    constexpr double unbreakable = 1;  // nm: the largest stretch that is foreseen
     const double arm = std::hypot(scene_.largest_radius() + 0.5 * std::max(law_.reach, law_.rest),
                                   0.5 * scene_.longest_element()),
                  softest = std::min(law_.stretch, law_.shear);
@@ -586,7 +586,7 @@ class LinkTerm : public ForceTerm {
 
   LinkLaw law_;
   Topology scene_, here_;      // here: what this process has of the scene
-  bool has_head_ = true;       // of the last memory
+  bool has_head_ = true;       // the last memory has one
   bool waits_ = false;         // for the time at which its links are placed
   double element_length_ = 0;  // nm; all types of a scene have the same
   double stiffness_ = 0;
