@@ -78,7 +78,8 @@ std::vector<TermEvent> take_events(std::vector<double>& numbers, int elements) {
   for (std::size_t at = 0, length; at < numbers.size(); at += length) {
     length = record_length(numbers, at);
     if (length == 0) refuse_memory();
-    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at), end = begin + static_cast<std::ptrdiff_t>(length);
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at),
+               end = begin + static_cast<std::ptrdiff_t>(length);
     if (begin[1] != an_event) {
       std::copy(begin, end, numbers.begin() + static_cast<std::ptrdiff_t>(kept));
       kept += length;
