@@ -264,6 +264,29 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
   }
 }
 
+// Tubes that begin apart: they meet between two lists, on ranks as here, also where both elements are copies of others.
+TEST_F(LammpsRun, FrictionBeginsWhereTubesMeet) {
+  constexpr int steps = 30;
+  const std::string scene_text =
+      line_scene("double", "[rope]\ntubes = 19\nlength_nm = 20\nspacing_nm = 1.81\nperturbation_nm = 0.01\n",
+                 "[[friction]]\nstrength_pN_per_nm = 20\nspin_strength_pN_per_nm = 30\nelastic_slip_nm = 0.005\n"
+                 "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n[limits]\npress_nm = 0.2\n");
+  expect_equal_steps(scene_text, steps, 1e-9);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.step();
+  EXPECT_EQ(native.forces().term_energy.at(0), 0) << "no tubes have met";
+  native.steps(steps - 1);
+  EXPECT_EQ(native.list().builds(), 0) << "they met between two lists";
+  const double energy = native.forces().term_energy.at(0);
+  EXPECT_GT(energy, 1e-3);
+  for (const int n : {1, 2, 4}) {
+    const std::string out = (dir / ("out-" + std::to_string(n))).string();
+    EXPECT_NEAR(read_lammps_rows(LammpsDirectory{out}, 1).back().terms.at(0), energy, 1e-8 * energy) << n;
+  }
+}
+
 // What has happened in a run, as its events.csv has it: times apart, which are sums of steps here and products there.
 struct Happened {
   std::vector<double> times;
