@@ -420,8 +420,8 @@ void FixMotion::restart(char* bytes) {
   if (!numbers.empty())
     std::memcpy(numbers.data(), bytes + sizeof account + sizeof count, numbers.size() * sizeof(double));
   for_records(numbers, [&](int element, const double* of, std::size_t length) {
-    std::vector<double>& to = element == the_account ? accounts_ : untold_;
-    to.insert(to.end(), of, of + length);
+    if (element == the_account) accounts_.insert(accounts_.end(), of, of + length);
+    if (element == an_event) untold_.insert(untold_.end(), of, of + length);
   });
 }
 

@@ -229,7 +229,7 @@ class LinkTerm : public ForceTerm {
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {
       here_ = scene.topology;
-      hear_of_head(*scene.others);
+      if (scene.others) hear_of_head(*scene.others);
       check_stretch(scene.state);
     } else if (!has_head_) {
       throw std::runtime_error("the memory of links is damaged");
