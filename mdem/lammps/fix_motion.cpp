@@ -15,6 +15,7 @@
 #include "output.h"
 #include "scene/lammps_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "timer.h"
@@ -390,7 +391,7 @@ struct Account {
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const Account all = {account(), carried_};
+  const Account all = {account_of_all(), carried_};
   // LAMMPS writes memories with the elements. Between runs elements may have gone elsewhere already.
   if (update->whichflag == 1) keep_memory();
   // Events stay here until the next state is written.
@@ -458,8 +459,7 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
   return removed;
 }
 
-void FixNve::kick(double dt, double time) {
-  if (grip_) account_.work += 0.5 * dt * grip_->own_power();
+void FixNve::kick(double dt) {
   if (engine_ && engine_->leads()) {
     account_.dissipated += engine_->kick(dt);
   } else {
@@ -467,33 +467,34 @@ void FixNve::kick(double dt, double time) {
     account_.dissipated += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
     account_.dissipated += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
   }
-  if (!grip_) return;
-  account_.work += grip_->constrain(time, dt, dt);
-  account_.work += 0.5 * dt * grip_->own_power();
+  if (grip_) account_.work += grip_->constrain(time_, 0.5 * update->dt, dt);
 }
 
-void FixNve::initial_integrate(int) {
-  const double dt = update->dt, began = model_->time_at(update->ntimestep - 1);
-  kick(0.5 * dt, began);
-  if (model_->thermostat) {
-    move(0.5 * dt);
-    check();
-    exchange_heat(dt, began + 0.5 * dt);
-    move(0.5 * dt);
-  } else {
-    move(dt);
-  }
+void FixNve::add_work_of_loads(double dt) {
+  if (grip_) account_.work += dt * grip_->own_power();
+}
+
+void FixNve::drift(double dt) {
+  move(dt);
+  time_ += dt;
   check();
 }
 
-// As Simulation::exchange_heat(): the change of the kinetic energy is heat.
-void FixNve::exchange_heat(double dt, double time) {
-  const double before = own_kinetic_energy();
+void FixNve::bathe(double dt) {
   if (!engine_->leads()) engine_->take_own();
-  engine_->exchange_heat(*model_->thermostat, dt, update->ntimestep, time);
+  engine_->bathe(*model_->thermostat, dt, update->ntimestep, time_);
   if (!engine_->leads()) engine_->give_own();
-  if (grip_) grip_->constrain(time, 0.0, 0.0);
-  account_.heat += own_kinetic_energy() - before;
+  if (grip_) grip_->constrain(time_, 0.0, 0.0);
+}
+
+double FixNve::damped(double dt) const {
+  if (engine_) return engine_->lost() - dt * engine_->damping_power();
+  return damp_ ? -dt * damp_->own_power() : 0.0;
+}
+
+void FixNve::initial_integrate(int) {
+  time_ = model_->time_at(update->ntimestep - 1);
+  begin_step(*this, update->dt, model_->thermostat != nullptr);
 }
 
 void FixNve::check() const {
@@ -510,12 +511,8 @@ void FixNve::check() const {
 }
 
 void FixNve::final_integrate() {
-  if (engine_) {
-    account_.dissipated += engine_->lost() - update->dt * engine_->damping_power();
-  } else if (damp_) {
-    account_.dissipated -= update->dt * damp_->own_power();
-  }
-  kick(0.5 * update->dt, now());
+  time_ = now();
+  end_step(*this, update->dt);
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();
   if (output->restart_flag && output->next_restart == update->ntimestep) carry();

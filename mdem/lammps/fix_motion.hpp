@@ -30,7 +30,7 @@ class FixMotion : public LMP::Fix {
   void pre_force(int vflag) override;
   double compute_vector(int n) override;
   // So far. All ranks.
-  EnergySupply account() const {
+  EnergySupply account_of_all() const {
     return {sum_over_ranks(lmp, account_.work), sum_over_ranks(lmp, account_.dissipated),
             sum_over_ranks(lmp, account_.heat)};
   }
@@ -104,13 +104,22 @@ class FixNve : public FixMotion {
   void final_integrate() override;
   void post_run() override;
 
+  // The parts of a step, by sim/dynamics/verlet.hpp.
+  EnergySupply& account() { return account_; }
+  void kick(double dt);
+  void add_work_of_loads(double dt);
+  void drift(double dt);
+  void bathe(double dt);
+  double kinetic_energy() const { return own_kinetic_energy(); }
+  double damped(double dt) const;
+
  private:
   bool engine_may_lead() const override { return only_known_fixes(); }
   void carry();  // the forces along with the elements, into the next output
-  void kick(double dt, double time);
-  void exchange_heat(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check() const;
+
+  double time_ = 0;  // ps, in the course of a step
 };
 
 class FixRelax : public FixMotion {
