@@ -434,6 +434,7 @@ int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_
 // If the forces of the last step are known, from memory or from the data or restart file, they are used. A run in
 // parts then equals an uninterrupted run.
 void FixNve::setup(int) {
+  mark();
   if (carried_ != update->ntimestep) return;
   double** last = carried(lmp);
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -497,6 +498,48 @@ void FixNve::initial_integrate(int) {
   begin_step(*this, update->dt, model_->thermostat != nullptr);
 }
 
+namespace {
+
+// What the numbers of a row say of the account of energy.
+struct Reading {
+  EnergyMark mark;
+  double kinetic = 0, bonds = 0, contact = 0;
+};
+Reading reading_of(const std::vector<double>& row) {
+  Reading r;
+  r.bonds = row[0] + row[1] + row[2] + row[3];
+  r.contact = row[4];
+  r.kinetic = row[5];
+  r.mark = {r.bonds + r.contact + r.kinetic, {row[6], row[7], row[8]}};
+  for (std::size_t k = lammps_row_numbers - 1; k < row.size(); k += lammps_numbers_of_term) r.mark.energy += row[k];
+  return r;
+}
+
+}  // namespace
+
+void FixNve::mark() {
+  if (!engine_ || !model_->judges_account) return;
+  mark_ = reading_of(energies()).mark;
+  marked_at_ = update->ntimestep;
+}
+
+// As a run does at its marks. LAMMPS cannot go back and divide its steps.
+void FixNve::judge() {
+  if (!engine_ || !model_->judges_account) return;
+  const Reading now = reading_of(energies());
+  const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
+  if (!account_closes(mark_, now.mark, now.kinetic, now.bonds, mixed ? now.contact : 0,
+                      static_cast<std::size_t>(model_->topology.elements())))
+    refuse(lmp,
+           "step " + std::to_string(update->ntimestep) + ": the energy balance has not closed since step " +
+               std::to_string(marked_at_) + "; `ropewalk run` would go back and divide its steps of " +
+               std::to_string(update->dt / units::fs) + " fs, which LAMMPS cannot",
+           "take the states before with `ropewalk import` and go on with `ropewalk resume`, or set run.time_step_fs to "
+           "half of that and export again");
+  mark_ = now.mark;
+  marked_at_ = update->ntimestep;
+}
+
 void FixNve::check() const {
   const MotionBound bound(model_->topology.largest_radius(), update->dt);
   if (engine_ && bound.holds(engine_->fastest())) return;
@@ -513,6 +556,7 @@ void FixNve::check() const {
 void FixNve::final_integrate() {
   time_ = now();
   end_step(*this, update->dt);
+  if (update->ntimestep == marked_at_ + account_window) judge();
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();
   if (output->restart_flag && output->next_restart == update->ntimestep) carry();
