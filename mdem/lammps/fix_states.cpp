@@ -352,7 +352,7 @@ void FixStates::write() {
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {
-    const EnergySupply account = motion->account();
+    const EnergySupply account = motion->account_of_all();
     state.header.work = account.work;
     state.header.dissipated = account.dissipated;
     state.header.heat = account.heat;

@@ -47,9 +47,9 @@ class RankEngine {
   double kick(double dt);
   void move(double dt);
   // The bath acts on the velocities of own elements during dt (ps), in the middle of this step.
-  void exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time);
+  void bathe(const Thermostat& bath, double dt, std::int64_t step, double time);
   const Fastest& fastest() const { return fastest_; }  // in the last move
-  double kinetic_energy() const;
+  double kinetic_energy() const { return ropewalk::kinetic_energy(topology_, state_); }
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
   void take_own();
   // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones
@@ -123,7 +123,6 @@ class RankEngine {
   // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and
   // bits of the motion must not depend on that.
   std::vector<Segment> moved_;
-  std::vector<double> removed_;  // energy that the last kick has removed from each of them, eV
   std::vector<int> element_;     // element of each own atom
   std::vector<char> is_shared_;  // likewise
   std::vector<Stretch> shared_;  // of those that are

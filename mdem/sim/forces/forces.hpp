@@ -137,6 +137,7 @@ void compute_reference(const Topology& topology, const Interaction& interaction,
 // Adds a damping force and its power.
 void add_pair(const DampingForce& damping, std::size_t i, std::size_t j, Forces& out);
 
+// Of own elements.
 double kinetic_energy(const Topology& topology, const State& state);
 
 // Force and torque sums about the origin: both zero where nothing external acts.
