@@ -22,7 +22,7 @@ struct Grade {
 // and numbers that agree with one another: shell, limits of the model, anharmonic law, pull, well. unfit: a
 // stiffness known to no more than a half, a wall that is not of carbon, the line law off by more than a tenth of
 // the well, or wider than 4.2 nm, where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev. Lett.
-// 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
+// 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501). Filaments are limited: no atoms stand behind their numbers.
 Grade grade_of(const ParameterSet& set);
 
 // EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.

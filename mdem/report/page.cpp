@@ -160,9 +160,16 @@ std::string measured_text(double value, double error) {
   return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
+namespace {
+
+// Between interatomic potentials of carbon, in the unit of the quantity; 0: none.
+double spread_of(const Quantity& q) { return q.of_carbon ? potential_spread(q.key) * std::fabs(q.value) : 0; }
+
+}  // namespace
+
 std::string measured_text(const Quantity& q, bool and_unit) {
   std::string text = measured_text(q.value, q.standard_error.value_or(0));
-  if (const double spread = potential_spread(q.key) * std::fabs(q.value); spread > 0) {
+  if (const double spread = spread_of(q); spread > 0) {
     const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // unit of its second digit
     text += fmt::format(" ± {:g} (potential)", std::round(spread / unit) * unit);
   }
@@ -194,7 +201,7 @@ std::string parameters_part(const std::string& name, const std::string& referenc
         "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape_markup(q.key), value_text(q), with_powers(q.unit),
         q.standard_error ? number_text(*q.standard_error, 2) : "<span class=\"soft\">not published</span>",
-        potential_spread(q.key) > 0 ? number_text(potential_spread(q.key) * std::fabs(q.value), 2) : "",
+        spread_of(q) > 0 ? number_text(spread_of(q), 2) : "",
         escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
 }

@@ -300,6 +300,19 @@ TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   }
 }
 
+// Sets have the shift of one sublattice against the other: atoms of a tube at rest are placed where LAMMPS leaves
+// them. Without the shift those of (8,2) are 0.08 eV above that, those of (5,5) 0.3 eV.
+TEST_F(Bridge, AtomsOfATubeAtRestAreAtRest) {
+  for (const std::string name : {"cnt-5-5-tersoff", "cnt-8-2-tersoff"}) {
+    const ParameterSet set = shipped(name);
+    const Elements straight = rod(8, set.element_length, {});
+    spit(dir / "state.csv", state_csv(straight.topology, straight.state));
+    const Outcome relaxed = run("atoms state.csv --parameters " + name + " -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    EXPECT_LT(std::fabs(nlohmann::json::parse(relaxed.out).at(0)["atoms_placed_eV"].get<double>()), 1e-3) << name;
+  }
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk::test

@@ -349,8 +349,11 @@ class LammpsEvents : public LammpsRun {
       const LogRow row = read_log((dir / there / "log.csv").string()).back();
       for (const Observable& c : observables()) {
         const double a = row_here[c.name], b = row[c.name];
-        if (c.name.rfind("work_", 0) == 0 && c.name != "work_eV") continue;  // LAMMPS does not tell the ends apart
-        if (c.name.rfind("force_", 0) == 0 || c.name.rfind("torque_", 0) == 0) continue;  // nor has it means
+        // LAMMPS does not tell the work of the ends apart, and has no means of their forces.
+        const auto begins = [&](const char* word) { return c.name.rfind(word, 0) == 0; };
+        if (begins("work_upper") || begins("work_lower") || begins("torque_") || begins("tension_") ||
+            c.name.find("stress_") != std::string::npos)
+          continue;
         ASSERT_EQ(std::isnan(a), std::isnan(b)) << c.name;
         if (std::isnan(a)) continue;
         EXPECT_NEAR(a, b, 1e-8 * std::fmax(1, std::fabs(a))) << c.name;

@@ -112,6 +112,7 @@ class TubeFailure : public ForceTerm {
     return now;
   }
 
+  bool remembers() const override { return true; }
   TermState memory() const override {
     TermState out;
     for (const int element : all_)
