@@ -96,8 +96,8 @@ Panel equilibria(const ReportInput& in) {
 Panel tension(const std::vector<LogRow>& log) {
   return {
       "Tension",
-      "Force along z that pulls at either end, mean over the time between two rows. At the start clamps bear the "
-      "cohesion of the rope, which would shorten free tubes a little.",
+      "Force along z that pulls at either end, mean over the time between two rows. It is not zero at the "
+      "start: cohesion would shorten free tubes a little, and the clamps hold them.",
       {"tension", "nN", false},
       {{"upper", logged("tension_upper_nN"), 0}, {"lower", logged("tension_lower_nN"), 1}},
       false,

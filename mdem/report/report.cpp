@@ -423,8 +423,8 @@ std::string passed_words(const LimitRecord& r) {
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
-      "Bonds of the model stay elastic at any deformation, and real tubes do not. The bonds listed here are beyond "
-      "the limits of the parameter set: their forces are not those of tubes.");
+      "Bonds of the model stay elastic at any deformation, and real tubes do not. Forces of bonds beyond these limits "
+      "of the parameter set do not describe real tubes.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;
