@@ -222,7 +222,7 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
              "the same distance from the axis; negative where tubes are drawn apart. Tension of the outer tubes "
              "presses the inner ones together. Twist also does the opposite: the section of a tube that leans is "
              "longer than wide, so that tubes around the axis need more room and draw the inner ones apart.") +
-         data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") +
+         data_table(columns, "ropewalk observe RUN --tubes has the pressure on every tube in the last frame.") +
          "</figure>\n";
 }
 
