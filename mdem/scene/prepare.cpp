@@ -277,7 +277,7 @@ Prepared prepare(Scene& scene) {
     drive->refuse_start(scene, out.topology, out.state, out.loads);
     drive->set_stepping(scene.lineage, out.stepping);
   }
-  refuse_loads(scene, out);
+  refuse_loads(scene, out.topology, out.interaction, out.loads);
   for (const auto& load : out.loads) load->begin(out.topology, out.state);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.time_step = chosen_step(scene, out.limit);

@@ -54,11 +54,13 @@ std::string named(const Topology& topology, int element) {
 
 }  // namespace
 
-void refuse_loads(const Scene& scene, const Prepared& p) {
-  if (p.loads.empty()) return;
-  std::vector<Kept> kept(p.state.size(), Kept{});
-  std::vector<bool> clamped(p.state.size());
-  for (const auto& load : p.loads) {
+void refuse_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,
+                  const LoadsAndConstraints& all) {
+  if (all.empty()) return;
+  const auto count = static_cast<std::size_t>(topology.elements());
+  std::vector<Kept> kept(count, Kept{});
+  std::vector<bool> clamped(count);
+  for (const auto& load : all) {
     const Kept own = kept_by(*load);
     const bool is_grip = dynamic_cast<const GripLoad*>(load.get()) != nullptr;
     for (const int e : load->elements) {
@@ -72,14 +74,15 @@ void refuse_loads(const Scene& scene, const Prepared& p) {
     const std::string table = drive->table().name;
     const InputError::Place place = place_in(scene, table, number[table]++);
     LoadsAndConstraints own;
-    drive->add_loads(scene, p.topology, p.interaction, own);
+    drive->add_loads(scene, topology, interaction, own);
     bool loads = false, felt = false;
     int at = -1;
     for (const auto& load : own) {
-      const bool moves = dynamic_cast<const FixLoad*>(load.get()) || dynamic_cast<const PrescribedRotation*>(load.get());
+      const bool moves =
+          dynamic_cast<const FixLoad*>(load.get()) || dynamic_cast<const PrescribedRotation*>(load.get());
       for (const int e : load->elements)
         if (moves && clamped[static_cast<std::size_t>(e)])
-          throw InputError(place, fmt::format("says how {} moves, and a [[grip]] does as well", named(p.topology, e)),
+          throw InputError(place, fmt::format("says how {} moves, and a [[grip]] does as well", named(topology, e)),
                            "name other elements, or leave it to the grip");
       const std::optional<LoadEffect> effect = load->effect();
       if (!effect || dynamic_cast<const GripLoad*>(load.get())) continue;
@@ -95,7 +98,7 @@ void refuse_loads(const Scene& scene, const Prepared& p) {
     if (loads && !felt && at >= 0)
       throw InputError(place,
                        fmt::format("is a load that nothing feels: {}, and whatever else it acts on, is held there",
-                                   named(p.topology, at)),
+                                   named(topology, at)),
                        "free these elements, load others, or take the table away");
   }
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "model/error.hpp"
+#include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
 namespace ropewalk {
@@ -60,7 +61,8 @@ TEST(RefuseLoads, LetsStandWhatActsOnSomething) {
 }
 
 TEST(RefuseLoads, NamesElementsThatAClampAndALoadMove) {
-  for (const std::string& twice : {clamp("upper") + fix("[-1]"), clamp("upper") + rotate, fix("\"all\"") + clamp("lower")})
+  for (const std::string& twice :
+       {clamp("upper") + fix("[-1]"), clamp("upper") + rotate, fix("\"all\"") + clamp("lower")})
     EXPECT_THAT(refused(twice), HasSubstr("a [[grip]] does as well")) << twice;
   EXPECT_EQ(refused(clamp("upper", "tubes = [0]\n") + load("fix", "[-1]", "tubes = [1, 2]\n")), "");
 }
