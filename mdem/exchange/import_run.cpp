@@ -319,7 +319,7 @@ class Import {
   std::int64_t marked_at_ = 0;
   bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
-  std::vector<double> memory_;  // of the force terms, in the last state
+  std::vector<double> memory_;  // force terms' memory in the last state
   std::vector<TermEvent> events_;  // since the last state that was taken
   std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;

@@ -15,6 +15,7 @@
 #include "output.h"
 #include "scene/lammps_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "timer.h"
@@ -24,7 +25,7 @@ namespace {
 
 using namespace LMP::FixConst;
 
-constexpr int numbers_a_round = 31;  // of an element
+constexpr int numbers_a_round = 31;  // numbers of one element
 
 // Versions of LAMMPS have different names for the call that sends the values of a fix to ghosts.
 template <class Comm>
@@ -390,7 +391,7 @@ struct Account {
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const Account all = {account(), carried_};
+  const Account all = {account_of_all(), carried_};
   // LAMMPS writes memories with the elements. Between runs elements may have gone elsewhere already.
   if (update->whichflag == 1) keep_memory();
   // Events stay here until the next state is written.
@@ -420,8 +421,8 @@ void FixMotion::restart(char* bytes) {
   if (!numbers.empty())
     std::memcpy(numbers.data(), bytes + sizeof account + sizeof count, numbers.size() * sizeof(double));
   for_records(numbers, [&](int element, const double* of, std::size_t length) {
-    std::vector<double>& to = element == the_account ? accounts_ : untold_;
-    to.insert(to.end(), of, of + length);
+    if (element == the_account) accounts_.insert(accounts_.end(), of, of + length);
+    if (element == an_event) untold_.insert(untold_.end(), of, of + length);
   });
 }
 
@@ -433,6 +434,7 @@ int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_
 // If the forces of the last step are known, from memory or from the data or restart file, they are used. A run in
 // parts then equals an uninterrupted run.
 void FixNve::setup(int) {
+  mark();
   if (carried_ != update->ntimestep) return;
   double** last = carried(lmp);
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -458,8 +460,7 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
   return removed;
 }
 
-void FixNve::kick(double dt, double time) {
-  if (grip_) account_.work += 0.5 * dt * grip_->own_power();
+void FixNve::kick(double dt) {
   if (engine_ && engine_->leads()) {
     account_.dissipated += engine_->kick(dt);
   } else {
@@ -467,33 +468,76 @@ void FixNve::kick(double dt, double time) {
     account_.dissipated += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
     account_.dissipated += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
   }
-  if (!grip_) return;
-  account_.work += grip_->constrain(time, dt, dt);
-  account_.work += 0.5 * dt * grip_->own_power();
+  if (grip_) account_.work += grip_->constrain(time_, 0.5 * update->dt, dt);
 }
 
-void FixNve::initial_integrate(int) {
-  const double dt = update->dt, began = model_->time_at(update->ntimestep - 1);
-  kick(0.5 * dt, began);
-  if (model_->thermostat) {
-    move(0.5 * dt);
-    check();
-    exchange_heat(dt, began + 0.5 * dt);
-    move(0.5 * dt);
-  } else {
-    move(dt);
-  }
+void FixNve::add_work_of_loads(double dt) {
+  if (grip_) account_.work += dt * grip_->own_power();
+}
+
+void FixNve::drift(double dt) {
+  move(dt);
+  time_ += dt;
   check();
 }
 
-// As Simulation::exchange_heat(): the change of the kinetic energy is heat.
-void FixNve::exchange_heat(double dt, double time) {
-  const double before = own_kinetic_energy();
+void FixNve::bathe(double dt) {
   if (!engine_->leads()) engine_->take_own();
-  engine_->exchange_heat(*model_->thermostat, dt, update->ntimestep, time);
+  engine_->bathe(*model_->thermostat, dt, update->ntimestep, time_);
   if (!engine_->leads()) engine_->give_own();
-  if (grip_) grip_->constrain(time, 0.0, 0.0);
-  account_.heat += own_kinetic_energy() - before;
+  if (grip_) grip_->constrain(time_, 0.0, 0.0);
+}
+
+double FixNve::damped(double dt) const {
+  if (engine_) return engine_->lost() - dt * engine_->damping_power();
+  return damp_ ? -dt * damp_->own_power() : 0.0;
+}
+
+void FixNve::initial_integrate(int) {
+  time_ = model_->time_at(update->ntimestep - 1);
+  begin_step(*this, update->dt, model_->thermostat != nullptr);
+}
+
+namespace {
+
+// What the numbers of a row say of the account of energy.
+struct Reading {
+  EnergyMark mark;
+  double kinetic = 0, bonds = 0, contact = 0;
+};
+Reading reading_of(const std::vector<double>& row) {
+  Reading r;
+  r.bonds = row[0] + row[1] + row[2] + row[3];
+  r.contact = row[4];
+  r.kinetic = row[5];
+  r.mark = {r.bonds + r.contact + r.kinetic, {row[6], row[7], row[8]}};
+  for (std::size_t k = lammps_row_numbers - 1; k < row.size(); k += lammps_numbers_of_term) r.mark.energy += row[k];
+  return r;
+}
+
+}  // namespace
+
+void FixNve::mark() {
+  if (!engine_ || !model_->judges_account) return;
+  mark_ = reading_of(energies()).mark;
+  marked_at_ = update->ntimestep;
+}
+
+// As a run does at its marks. LAMMPS cannot go back and divide its steps.
+void FixNve::judge() {
+  if (!engine_ || !model_->judges_account) return;
+  const Reading now = reading_of(energies());
+  const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
+  if (!account_closes(mark_, now.mark, now.kinetic, now.bonds, mixed ? now.contact : 0,
+                      static_cast<std::size_t>(model_->topology.elements())))
+    refuse(lmp,
+           "step " + std::to_string(update->ntimestep) + ": the energy balance has not closed since step " +
+               std::to_string(marked_at_) + "; `ropewalk run` would go back and divide its steps of " +
+               std::to_string(update->dt / units::fs) + " fs, which LAMMPS cannot",
+           "take the states before with `ropewalk import` and go on with `ropewalk resume`, or set run.time_step_fs to "
+           "half of that and export again");
+  mark_ = now.mark;
+  marked_at_ = update->ntimestep;
 }
 
 void FixNve::check() const {
@@ -510,12 +554,9 @@ void FixNve::check() const {
 }
 
 void FixNve::final_integrate() {
-  if (engine_) {
-    account_.dissipated += engine_->lost() - update->dt * engine_->damping_power();
-  } else if (damp_) {
-    account_.dissipated -= update->dt * damp_->own_power();
-  }
-  kick(0.5 * update->dt, now());
+  time_ = now();
+  end_step(*this, update->dt);
+  if (update->ntimestep == marked_at_ + account_window) judge();
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();
   if (output->restart_flag && output->next_restart == update->ntimestep) carry();

@@ -11,7 +11,7 @@
 
 #include "lammps/fix_damp.hpp"
 #include "lammps/rank_engine.hpp"
-#include "sim/dynamics/energy_supply.hpp"
+#include "sim/dynamics/energy_mark.hpp"
 #include "sim/dynamics/fire.hpp"
 
 namespace ropewalk::lammps {
@@ -30,7 +30,7 @@ class FixMotion : public LMP::Fix {
   void pre_force(int vflag) override;
   double compute_vector(int n) override;
   // So far. All ranks.
-  EnergySupply account() const {
+  EnergySupply account_of_all() const {
     return {sum_over_ranks(lmp, account_.work), sum_over_ranks(lmp, account_.dissipated),
             sum_over_ranks(lmp, account_.heat)};
   }
@@ -59,6 +59,8 @@ class FixMotion : public LMP::Fix {
   bool only_known_fixes() const;
   double now() const { return model_->time_at(update->ntimestep); }
   double own_kinetic_energy() const;
+  // The numbers of a row behind the time. All ranks.
+  std::vector<double> energies() const;
 
   std::shared_ptr<const LammpsModel> model_;
   FixGrip* grip_ = nullptr;
@@ -74,7 +76,6 @@ class FixMotion : public LMP::Fix {
   void reach_for(double skin);
   void check_elements();
   void check_masses();
-  std::vector<double> energies() const;
   std::vector<double>& memory_of(int i) { return memory_[static_cast<std::size_t>(i)]; }
   void give_memory(const std::vector<double>& numbers);
   void keep_memory();
@@ -89,8 +90,8 @@ class FixMotion : public LMP::Fix {
   // built. Lists of numbers as those of sim/forces/force_terms.hpp.
   bool remembers_ = false;
   std::vector<std::vector<double>> memory_;
-  int longest_ = 0;                            // of an element of any rank
-  int round_ = -1;                             // of the messages that bring them to copies; -1: these bring orientations
+  int longest_ = 0;                            // longest memory of an element of any rank
+  int round_ = -1;                             // which message brings them to copies; -1: it brings orientations
   std::vector<double> accounts_;               // that the terms begin with
   std::vector<double> untold_;                 // events of before the start
 };
@@ -104,13 +105,26 @@ class FixNve : public FixMotion {
   void final_integrate() override;
   void post_run() override;
 
+  // The parts of a step, by sim/dynamics/verlet.hpp.
+  EnergySupply& account() { return account_; }
+  void kick(double dt);
+  void add_work_of_loads(double dt);
+  void drift(double dt);
+  void bathe(double dt);
+  double kinetic_energy() const { return own_kinetic_energy(); }
+  double damped(double dt) const;
+
  private:
   bool engine_may_lead() const override { return only_known_fixes(); }
   void carry();  // the forces along with the elements, into the next output
-  void kick(double dt, double time);
-  void exchange_heat(double dt, double time);
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check() const;
+  void mark();
+  void judge();
+
+  double time_ = 0;  // ps, in the course of a step
+  EnergyMark mark_;
+  LMP::bigint marked_at_ = 0;
 };
 
 class FixRelax : public FixMotion {

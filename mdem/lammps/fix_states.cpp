@@ -1,6 +1,7 @@
 #include "lammps/fix_states.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -55,6 +56,9 @@ class File {
     }
   }
   void cut(std::int64_t bytes) const {
+    // A driver of FAT refuses to cut a file to the length that it has.
+    struct stat status;
+    if (::fstat(file_, &status) == 0 && status.st_size == bytes) return;
     if (::ftruncate(file_, bytes) != 0) throw file_error(path_, "cannot be written", errno);
   }
   void flush() const {
@@ -348,7 +352,7 @@ void FixStates::write() {
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {
-    const EnergySupply account = motion->account();
+    const EnergySupply account = motion->account_of_all();
     state.header.work = account.work;
     state.header.dissipated = account.dissipated;
     state.header.heat = account.heat;

@@ -35,6 +35,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
   for (const auto& drive : scene.drives) drive->set_stepping(m.start.lineage, stepping);
   m.thermostat = stepping.thermostat;
   m.law = scene.contact.law;
+  m.judges_account = !scene.contact.legacy_torque;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
   m.force_tolerance = scene.run.goal.force;
   return m;

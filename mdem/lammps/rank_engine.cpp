@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -180,12 +179,8 @@ void RankEngine::complete_forces() {
 
 double RankEngine::kick(double dt) {
   complete_forces();
-  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
-  const ForceRows total = rows_of(forces_);
-  removed_.resize(moved_.size());
-  for_each(moved_.size(), state_.size() > parallel_from,
-           [&](std::size_t k) { removed_[k] = ropewalk::kick(topology_, terms, total, dt, moved_[k], state_); });
-  return terms ? std::accumulate(removed_.begin(), removed_.end(), 0.0) : 0;
+  return kick_all(topology_, engine_.terms(), rows_of(forces_), dt, static_cast<int>(moved_.size()),
+                  [this](int k) { return moved_[static_cast<std::size_t>(k)]; }, state_);
 }
 
 void RankEngine::move(double dt) {
@@ -206,22 +201,11 @@ void RankEngine::move(double dt) {
 }
 
 // Copies change as well; their owners send them before they are read.
-void RankEngine::exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time) {
+void RankEngine::bathe(const Thermostat& bath, double dt, std::int64_t step, double time) {
   state_.step = step;
   state_.time = time;
   std::vector<double> none;
   bath.apply(topology_, dt, state_, none);
-}
-
-double RankEngine::kinetic_energy() const {
-  double sum = 0;
-  for (const Segment& of : moved_)
-    for (int k = of.begin; k < of.end; ++k) {
-      const TubeType& type = topology_.type_of(of.tube);
-      const auto i = static_cast<std::size_t>(k);
-      sum += type.mass * state_.velocity[i].squaredNorm() + type.inertia * state_.angular_velocity[i].squaredNorm();
-    }
-  return 0.5 * sum;
 }
 
 bool RankEngine::stale() {

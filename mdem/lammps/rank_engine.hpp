@@ -47,9 +47,9 @@ class RankEngine {
   double kick(double dt);
   void move(double dt);
   // The bath acts on the velocities of own elements during dt (ps), in the middle of this step.
-  void exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time);
+  void bathe(const Thermostat& bath, double dt, std::int64_t step, double time);
   const Fastest& fastest() const { return fastest_; }  // in the last move
-  double kinetic_energy() const;
+  double kinetic_energy() const { return ropewalk::kinetic_energy(topology_, state_); }
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
   void take_own();
   // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones
@@ -74,8 +74,8 @@ class RankEngine {
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
 
-  // Of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the records of its
-  // own elements.
+  // Memories of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the
+  // records of its own elements.
   std::vector<double> memory() const { return engine_.terms().memory(); }
   // For the next build: the records of all elements here, copies among them. At the first one the accounts as well.
   void set_memory(std::vector<double> memory) { next_memory_ = std::move(memory); }
@@ -123,7 +123,6 @@ class RankEngine {
   // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and
   // bits of the motion must not depend on that.
   std::vector<Segment> moved_;
-  std::vector<double> removed_;  // energy that the last kick has removed from each of them, eV
   std::vector<int> element_;     // element of each own atom
   std::vector<char> is_shared_;  // likewise
   std::vector<Stretch> shared_;  // of those that are

@@ -42,8 +42,8 @@ bool ends_in(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Of the directory `errors`: errors.json and numerics.json, the directories of the runs behind numerics.json, and
-// for each run behind errors.json NAME-plus.toml and the directory NAME-plus.
+// Contents of the directory `errors`: errors.json and numerics.json, the directories of the runs behind numerics.json,
+// and for each run behind errors.json NAME-plus.toml and the directory NAME-plus.
 bool is_errors_file(const std::string& name) {
   for (const char* run : {"half-elements", "half-step", "half-rate", "tenth-tolerance", "start-*"})
     if (fits(name, run)) return true;

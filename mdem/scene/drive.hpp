@@ -88,7 +88,7 @@ class Drive {
   virtual std::string why_not_lengthened() const { return why_not_split(); }
   // What LAMMPS cannot carry; no key: it can.
   struct NotForLammps {
-    std::string key;     // of the scene, or the table
+    std::string key;     // key of the scene, or the table
     std::string reason;  // behind "is not for LAMMPS: "
   };
   virtual NotForLammps not_for_lammps() const { return {}; }

@@ -133,7 +133,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
       const bool newer = key.name == std::string(sums_key) || key.name == std::string(came_broken_key);
-      if (newer && !json.contains(key.name)) return;  // of version 0.3.0
+      if (newer && !json.contains(key.name)) return;  // version 0.3.0 wrote none
       const Json& found = json.at(key.name);
       using Value = std::decay_t<decltype(value)>;
       if (std::is_integral_v<Value> && !std::is_same_v<Value, bool> && !found.is_number_integer())

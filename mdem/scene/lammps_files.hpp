@@ -30,7 +30,7 @@ struct LammpsStart {
   std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
   double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
-  bool tubes_came_broken = false;                   // in its first state, and no others break
+  bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
   std::vector<std::string> parameters;              // files, of each tube type
   std::map<std::string, std::string> sums;          // of the files that LAMMPS reads, by name; empty: an older export
 };
@@ -73,7 +73,7 @@ struct LammpsScript {
   std::string law = "paper";
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
-  int types = 1;          // of tubes
+  int types = 1;          // number of tube types
   Vector3 low, high;      // the box; it grows with the elements, and never shrinks below this
   double skin = 0, reach = 0;
   int excluded_elements = 3;  // neighbours along any tube that contact skips, at least

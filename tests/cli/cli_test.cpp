@@ -84,6 +84,8 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"check d --accuracy --stretch 0", "--stretch: 0 must be positive"},
+        std::pair{"bench rope-91x50 --parts 4", "--parts: is no option any more: export the scene"},
+        std::pair{"bench --plain", "--plain: is no option any more"},
         std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);

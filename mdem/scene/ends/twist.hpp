@@ -39,7 +39,7 @@ class TwistLoad : public Load {
   bool lateral_free = true;
   bool axial_free = true;
   double increment = 1.0;  // ps between relaxations of every spin, where the twist is geometric only
-  double sign = 1;         // of the moment: + on the upper grip, - on the lower
+  double sign = 1;         // sign of the moment: + on the upper grip, - on the lower
 
   double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
   double unload_time() const { return unload_rate > 0 ? moment / unload_rate : 0.0; }  // ps

@@ -61,7 +61,7 @@ struct FailureLaw {
   double moment = never_breaks;  // eV
   std::uint64_t seed = 1;
 
-  // Of the bond behind each element of such a tube.
+  // Strain limits of the bond behind each element of such a tube.
   std::function<double(int)> strains_of(const TubeType& type) const {
     const double length = type.element_length;
     if (from_atoms) return [end = end_of_stretch(type.bond.anharmonic)](int) { return end; };
@@ -112,6 +112,7 @@ class TubeFailure : public ForceTerm {
     return now;
   }
 
+  bool remembers() const override { return true; }
   TermState memory() const override {
     TermState out;
     for (const int element : all_)
@@ -229,7 +230,7 @@ class TubeFailure : public ForceTerm {
 
   FailureLaw law_;
   Topology scene_, here_;      // here: what this process has of the scene
-  std::vector<double> limit_;  // of strain, of the bond behind each element here
+  std::vector<double> limit_;  // strain limit of the bond behind each element here
   std::vector<char> broken_;   // likewise
   std::vector<int> all_;           // elements behind which a bond has broken, images left out
   std::vector<TermEvent> events_;  // that nobody has written yet

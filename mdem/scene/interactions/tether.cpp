@@ -29,7 +29,7 @@ constexpr int elsewhere = -1;
 // --- the term -----------------------------------------------------------------------------------------
 
 struct TetherEnd {
-  std::vector<int> elements;         // of the scene; none: a fixed point
+  std::vector<int> elements;         // elements of the scene; none: a fixed point
   Vector3 centre = Vector3::Zero();  // nm
   std::vector<int> own;              // the elements of this process, by their places in its state
 };

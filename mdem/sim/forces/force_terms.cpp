@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t head = 3, numbers_of_event = 6;  // of a record; of an event before its word
+constexpr std::size_t head = 3, numbers_of_event = 6;  // numbers of a record's head; of an event before its word
 
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;
@@ -78,7 +78,8 @@ std::vector<TermEvent> take_events(std::vector<double>& numbers, int elements) {
   for (std::size_t at = 0, length; at < numbers.size(); at += length) {
     length = record_length(numbers, at);
     if (length == 0) refuse_memory();
-    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at), end = begin + static_cast<std::ptrdiff_t>(length);
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at),
+               end = begin + static_cast<std::ptrdiff_t>(length);
     if (begin[1] != an_event) {
       std::copy(begin, end, numbers.begin() + static_cast<std::ptrdiff_t>(kept));
       kept += length;

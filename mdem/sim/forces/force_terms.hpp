@@ -10,7 +10,7 @@
 
 namespace ropewalk {
 
-// Of several terms.
+// States of several terms.
 struct TermStates {
   std::vector<TermState> records;
   std::vector<TermAccount> accounts;
@@ -65,7 +65,7 @@ class ForceTerms : private PairWork {
 
   // The name of the first of the interaction's own terms that has no tangent; empty: all have added theirs.
   std::string add_tangent(const State& state, const ForceTerm::AddBlock& add) const;
-  // Of the interaction's own terms, one after another.
+  // Accounts of the interaction's own terms, one after another.
   std::vector<TermAccount> accounts() const;
   // ForceTerm::broken_bonds of the one that has some; null: none has.
   const std::vector<char>* broken_bonds() const;
@@ -98,7 +98,7 @@ class ForceTerms : private PairWork {
   Damping damping_;                                       // that the others stand for
   std::vector<TermEvent> earlier_;                        // events of before the last set_memory()
   const Processes* others_ = nullptr;
-  const State* state_ = nullptr;  // of the evaluation
+  const State* state_ = nullptr;  // state of the evaluation
   long stamp_ = 0;                // of the list that they are prepared for
   bool in_kick_ = false, news_ = false;
 };

@@ -126,6 +126,7 @@ double kinetic_energy(const Topology& topology, const State& state) {
   for (int t = 0; t < topology.tubes(); ++t) {
     double translation = 0, rotation = 0;
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
+      if (!topology.owns(i)) continue;
       translation += state.velocity[static_cast<std::size_t>(i)].squaredNorm();
       rotation += state.angular_velocity[static_cast<std::size_t>(i)].squaredNorm();
     }

@@ -68,7 +68,7 @@ struct TubeBonds {
 // Energy and power of some bonds.
 struct BondSum {
   BondEnergy energy;
-  double power = 0;   // of their damping
+  double power = 0;   // power of their damping
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
 };
 
@@ -123,10 +123,10 @@ class ForceEngine {
 
   TubeParts parts_;
   std::vector<Joint> joints_;  // behind each part
-  std::vector<BondSum> sums_;  // of each part
-  Vec3Array axis_;             // of all elements
+  std::vector<BondSum> sums_;  // sums of each part
+  Vec3Array axis_;             // axes of all elements
   std::shared_ptr<const ContactLaw> law_;
-  Cloned<ContactEngine> contact_;  // of this law
+  Cloned<ContactEngine> contact_;  // engine of this law
   ForceTerms terms_;
   Times times_;
 };
@@ -137,6 +137,7 @@ void compute_reference(const Topology& topology, const Interaction& interaction,
 // Adds a damping force and its power.
 void add_pair(const DampingForce& damping, std::size_t i, std::size_t j, Forces& out);
 
+// Kinetic energy of own elements, eV.
 double kinetic_energy(const Topology& topology, const State& state);
 
 // Force and torque sums about the origin: both zero where nothing external acts.

@@ -52,7 +52,7 @@ struct Candidate {
 //   v_a = A along_a + B turning_a, v_b likewise:  force on a  v_a + v_b,  torque on a  w x v_a,  on b  w x v_b.
 struct Pair {
   double s = 0, cosine = 1,
-         across = 0;  // of the axes; nm from a's centre to b's, square of its part across the axes
+         across = 0;  // cosine of the axes' angle; nm from a's centre to b's, square of its part across the axes
   Direction of_a, of_b;
   Vector3 w, along_a, along_b, turning_a, turning_b;
   // Rate of a slip whose parts are v_a and v_b.
@@ -214,7 +214,7 @@ class DryFrictionTerm : public ForceTerm {
     int type = 0;
     bool own = true, ends_tube = false;
     double length = 0, radius = 0;  // nm
-    int image = 0;                  // of a slice: 1 above it, -1 below it, 0 in it
+    int image = 0;                  // image in a slice: 1 above it, -1 below it, 0 in it
   };
 
   // The largest sum over a row of the drag's matrix over eta l, with six tubes at the distance d around one. The
@@ -297,7 +297,7 @@ class DryFrictionTerm : public ForceTerm {
     p.turning_b = turning_part(at_b, p.w, p.cosine > 0 ? r_b : -r_b, p.of_b);
     return p;
   }
-  // Of arm alpha; `direction`: of w in the frame.
+  // Turning part of arm alpha; `direction`: of w in the frame.
   static Vector3 turning_part(const Frame& frame, const Vector3& w, double arm, Direction& direction) {
     const double x = frame.e1.dot(w), y = frame.e2.dot(w), inverse = 1 / std::sqrt(std::max(x * x + y * y, 1e-12));
     direction = {x * inverse, y * inverse};
@@ -311,7 +311,7 @@ class DryFrictionTerm : public ForceTerm {
     c.placed = true;
   }
 
-  // Of a slip, over the stiffness: nm^2, nm.
+  // Potential of a slip, over the stiffness: nm^2, nm.
   struct Potential {
     double value = 0, slope = 0;
   };

@@ -35,7 +35,7 @@ Axis axis_at(const Topology& topology, const State& state, int element) {
 // b is not within reach there.
 struct Facing {
   double on_b = 0;  // nm
-  Vector3 to_b;     // from axis to axis
+  Vector3 to_b;     // vector from axis to axis
 };
 bool faces(const Axis& a, const Axis& b, double s, double reach, Facing& out) {
   const Vector3 from_b = a.centre + s * a.along - b.centre;
@@ -229,7 +229,7 @@ class LinkTerm : public ForceTerm {
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {
       here_ = scene.topology;
-      hear_of_head(*scene.others);
+      if (scene.others) hear_of_head(*scene.others);
       check_stretch(scene.state);
     } else if (!has_head_) {
       throw std::runtime_error("the memory of links is damaged");
@@ -258,7 +258,6 @@ class LinkTerm : public ForceTerm {
   }
 
   // Processes that have both ends of a link judge it alike; that of its first element counts it.
-
   StateUpdate advance(double, const State& state) override {
     StateUpdate all;
     if (waits_ && state.time >= law_.placed_at - rounding) all.news = place_all(state);
@@ -424,7 +423,7 @@ class LinkTerm : public ForceTerm {
  private:
   // nm: how far the elements of a link can be apart before it breaks, or may be where none breaks.
   double longest_link() const {
-    constexpr double unbreakable = 1;  // of stretch
+    constexpr double unbreakable = 1;  // nm: the largest stretch that is foreseen
     const double arm = std::hypot(scene_.largest_radius() + 0.5 * std::max(law_.reach, law_.rest),
                                   0.5 * scene_.longest_element()),
                  softest = std::min(law_.stretch, law_.shear);
@@ -437,12 +436,13 @@ class LinkTerm : public ForceTerm {
     return 2 * arm + std::min(stretch, unbreakable);
   }
   void check_stretch(const State& state) const {
+    constexpr double of_a_step = 0.1;  // nm: the last step may have stretched it to where it breaks
     for (const Link& link : links_) {
       const int a = place_of(here_, link.at.a), b = place_of(here_, link.at.b);
       if (a < 0 || !here_.owns(a)) continue;
       const double apart = b < 0 ? copy_reach() : (state.position[static_cast<std::size_t>(b)] -
                                                    state.position[static_cast<std::size_t>(a)]).norm();
-      if (b < 0 || apart > longest_link())
+      if (b < 0 || apart > longest_link() + of_a_step)
         throw std::runtime_error("the link between elements " + std::to_string(link.at.a) + " and " +
                                  std::to_string(link.at.b) + " is stretched over more than " +
                                  std::to_string(std::min(apart, longest_link())) +
@@ -586,7 +586,7 @@ class LinkTerm : public ForceTerm {
 
   LinkLaw law_;
   Topology scene_, here_;      // here: what this process has of the scene
-  bool has_head_ = true;       // of the last memory
+  bool has_head_ = true;       // the last memory has one
   bool waits_ = false;         // for the time at which its links are placed
   double element_length_ = 0;  // nm; all types of a scene have the same
   double stiffness_ = 0;
@@ -596,8 +596,8 @@ class LinkTerm : public ForceTerm {
   double last_formed_ = 0;           // ps
   long begun_ = 0;                   // links that advance() has yet to count
   double given_ = 0;                 // eV, that links formed with; likewise
-  std::vector<ActingLink> acting_;   // in the order of the links
-  std::vector<LinkAction> actions_;  // of each of them
+  std::vector<ActingLink> acting_;   // acting ones, in the order of the links
+  std::vector<LinkAction> actions_;  // action of each of them
   Rows of_first_, of_second_;        // acting links by a and by b
 };
 

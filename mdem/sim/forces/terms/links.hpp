@@ -41,7 +41,7 @@ struct LinkLaw {
   double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
   std::uint64_t lineage = 0;  // of the links that form while the scene moves: see lineage_key()
-  TypePairs types;            // of tubes whose contacts get links
+  TypePairs types;            // types of tubes whose contacts get links
 };
 
 // Where a link holds: elements of the scene, and its points and normals in their frames.

@@ -55,7 +55,7 @@ Peel peel(const ParameterSet& set, double opening, double crack) {
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
-  const double adhesion = -surface_integral(oracle).parallel_well().energy;
+  const double adhesion = -pair_well(oracle).energy;
   // Cantilevers in balance with the adhesion, G = 9 EI w^2/c^4.
   const auto crack = [&](double w) { return std::pow(9 * oracle.bond.bend * w * w / adhesion, 0.25); };
   const auto force = [&](double w) { return 3 * oracle.bond.bend * w / std::pow(crack(w), 3); };
