@@ -40,7 +40,7 @@ class TubeCurve {
   struct Bond {
     Vector3 from, to, tangent_from, tangent_to;  // nm; tangents scaled by the chord
     Eigen::Quaterniond start;
-    Vector3 turn_axis;  // of the body
+    Vector3 turn_axis;  // axis in the body's frame
     double turn = 0;    // rad
     double radius = 0;  // nm
   };

@@ -35,7 +35,7 @@ double line_fit_error(const ParameterSet& set);
 // The error of the universal law, which acts between tubes of different kinds. Negative: the set has none.
 double universal_error(const ParameterSet& set);
 // A contact law that is further off than this is of no use.
-inline constexpr double unusable_contact = 0.1;  // of the well
+inline constexpr double unusable_contact = 0.1;  // part of the well
 
 // Standard deviation, over all registries, of the energy of two real tubes side by side, over the well. Negative:
 // the set does not say.

@@ -96,7 +96,7 @@ struct Validity {
 // The `line` law of a set, with the input of its integrals.
 struct LineParameters {
   double surface_density = 0;  // atoms per nm^2
-  LineDensity density;         // of two tubes of this kind
+  LineDensity density;         // line density of two tubes of this kind
   double pair_spacing = 0;     // nm
   double pair_energy = 0;      // eV/nm
   double cross90_energy = 0;   // eV

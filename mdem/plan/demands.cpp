@@ -181,7 +181,7 @@ Demands DemandsAhead::at(double time) const {
   const double more = turned(time), winding = winding_ + more;
   const double twist = twist_.farthest(more);
   const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
-  double stretched = 0;  // by the way aside
+  double stretched = 0;  // extension by the way aside
   if (length_kept_) {
     const double drawn = std::hypot(1 + drawn_apart_.value(time) / period_, aside / period_) - 1,
                  along = 1 + (drawn < 0 && tubes_ > 0 ? std::max(drawn, -column_) : drawn);

@@ -10,8 +10,8 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t max_rows = 60;  // of a table under a chart
-constexpr int max_decimals = 9;       // of a number beside its error
+constexpr std::size_t max_rows = 60;  // rows of a table under a chart
+constexpr int max_decimals = 9;       // decimals of a number beside its error
 
 // Decimals of a column: five digits of the largest value, and the same decimals in all rows.
 int decimals_of(const TableColumn& column) {
@@ -170,7 +170,7 @@ double spread_of(const Quantity& q) { return q.of_carbon ? potential_spread(q.ke
 std::string measured_text(const Quantity& q, bool and_unit) {
   std::string text = measured_text(q.value, q.standard_error.value_or(0));
   if (const double spread = spread_of(q); spread > 0) {
-    const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // of its second digit
+    const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // unit of its second digit
     text += fmt::format(" ± {:g} (potential)", std::round(spread / unit) * unit);
   }
   return and_unit && q.unit != "1" ? text + " " + q.unit : text;
