@@ -538,7 +538,9 @@ TEST_P(LammpsRestart, FilesGoOnOnAnyNumberOfRanks) {
   ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120").code, 0);
   const Left whole = left_by(dir / "out", topology);
   const LammpsRow row = read_lammps_rows(files, terms).back();
-  if (GetParam()) EXPECT_GT(row.accounts[0].events, 5);
+  if (GetParam()) {
+    EXPECT_GT(row.accounts[0].events, 5);
+  }
   std::string script = slurp(dir / "out/in.rope");
   const std::size_t region = script.find("region box"), elements = script.find("fix elements");
   script.replace(region, elements - region, "read_restart restart.60.%\n");
