@@ -377,7 +377,7 @@ TEST_F(LammpsEvents, MemoriesGoWithTheElementsOfAFilm) {
       line_scene("double", "[film]\ntubes = 12\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
                  "[[friction]]\nstrength_pN_per_nm = 20\nelastic_slip_nm = 0.005\n"
                  "[[links]]\nper_nm = 1\nstiffness_nN_per_nm = 10\nbreaks_at_nN = 0.3\nforming_per_nm_ps = 0.5\n"
-                 "most_per_nm = 2\n[failure]\nstrain = 0.012\n[start]\ntemperature_K = 300\n"
+                 "most_per_nm = 2\n[failure]\nmoment_nN_nm = 3\n[start]\ntemperature_K = 300\n"
                  "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n"
                  "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n"),
       {{"link formed", 20}, {"link broke", 5}, {"tube broke", 1}},
