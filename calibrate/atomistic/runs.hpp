@@ -39,6 +39,10 @@ struct CellResult {
 // Radius, length and inner shift of the untwisted tube at zero axial force.
 RelaxedTube relax_tube(RunContext& run);
 
+// A shape at its natural twist, with the inner shift of the untwisted cell, gets the shift that it has at that twist:
+// by a cell of `shear` (radius times twist), linear between the two.
+void move_inner_shift(RunContext& run, double shear, TubeShape& shape);
+
 // Cells at all pairs of these strains and shears.
 struct CellGrid {
   std::string name;                    // name of the LAMMPS run and of its rows

@@ -163,8 +163,10 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   timed(out.fit_seconds, [&] { fit_bend(out.rows, out); });
 
   out.energy_per_atom = 0.5 * tube.energy_per_hexagon;
-  out.sublattice_turn = tube.shape.arc_shift;
-  out.sublattice_rise = tube.shape.height_shift;
+  TubeShape at_rest = tube.shape;
+  move_inner_shift(run, options.largest_shear, at_rest);
+  out.sublattice_turn = at_rest.arc_shift;
+  out.sublattice_rise = at_rest.height_shift;
   out.envelope = scaled_envelope(tube.shape.radius);
   limits_from_terms(out, out.envelope);
   const double kink = out.envelope.kink_curvature.value;

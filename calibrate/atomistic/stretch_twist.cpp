@@ -69,7 +69,8 @@ std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, 
       fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
 }
 
-// Mean displacement of the second sublattice against the first, from where `shape` places them.
+// Mean displacement of the second sublattice against the first, from where `shape` places them. The mirror of an
+// armchair tube keeps the one of the two, that of a zigzag tube the other at 0.
 void find_inner_shift(Chirality c, const std::vector<Site>& sites, const std::vector<Vector3>& atoms,
                       TubeShape& shape) {
   const double length = static_cast<double>(sites.size() / 2) * shape.length_per_hexagon;
@@ -82,8 +83,8 @@ void find_inner_shift(Chirality c, const std::vector<Site>& sites, const std::ve
     height[sites[i].second] += std::remainder(atoms[i].z() - rolled.z(), length);
   }
   const double per_atom = 2.0 / static_cast<double>(sites.size());
-  shape.arc_shift = (arc[1] - arc[0]) * per_atom;
-  shape.height_shift = (height[1] - height[0]) * per_atom;
+  shape.arc_shift = c.n == 0 || c.m == 0 ? 0 : (arc[1] - arc[0]) * per_atom;
+  shape.height_shift = c.n == c.m ? 0 : (height[1] - height[0]) * per_atom;
 }
 
 // The rolled sheet is within 10 % of every relaxed tube. A potential without this minimum may give any result.
@@ -162,6 +163,28 @@ RelaxedTube relax_tube(RunContext& run) {
   tube.contraction = -std::log(result[1][3] / result[0][3]) / std::log(1.005);
   find_inner_shift(c, sites, read_atoms(run, "relax.atoms", sites.size()), tube.shape);
   return tube;
+}
+
+void move_inner_shift(RunContext& run, double shear, TubeShape& shape) {
+  const Chirality c = run.c;
+  if (!c.chiral() || shape.twist == 0) return;
+  const LatticeVector period = cell_near(c, std::copysign(shear, shape.twist), 0.1 * shear,
+                                         std::max(shortest_cell, 2 * run.potential.cutoff));
+  const long hexagons = cell_hexagons(c, period);
+  TubeShape twisted = shape;
+  const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
+  twisted.twist = -2 * pi * period_turns(c, period) / length;
+  const double part = shape.twist / twisted.twist;
+  const std::vector<Site> sites = strip_sites(c, hexagons);
+  write_data(run, "shift.data", data_file({tube_atoms(c, twisted, hexagons)}, shape.radius + 0.5, 0, length));
+  run_stage(run, "shift",
+            "# a twisted cell, for its inner shift\n" + uniform_cell_commands(run.potential, "shift.data") +
+                "minimize 0.0 1e-9 2000 20000\n"
+                "write_dump all custom shift.atoms id x y z modify sort id format float %.12f\n");
+  // The atoms began at the shift of the untwisted cell: what is found is the change.
+  find_inner_shift(c, sites, read_atoms(run, "shift.atoms", sites.size()), twisted);
+  shape.arc_shift += part * twisted.arc_shift;
+  shape.height_shift += part * twisted.height_shift;
 }
 
 CellGrid elastic_grid(const StiffnessOptions& options) {

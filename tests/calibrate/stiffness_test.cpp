@@ -444,6 +444,7 @@ TEST_F(RealTube, ChiralTubeHasANaturalTwistAndItsMirrorImageTheOpposite) {
   const Potential potential = find_potential("tersoff");
   const StiffnessOptions options;
   double twist[2], coupling[2];
+  TubeShape shape[2];
   for (const int mirrored : {0, 1}) {
     RunContext run{mirrored ? Chirality{4, 6} : Chirality{6, 4}, potential, folder, options, 0, {}};
     const RelaxedTube tube = relax_tube(run);
@@ -453,11 +454,19 @@ TEST_F(RealTube, ChiralTubeHasANaturalTwistAndItsMirrorImageTheOpposite) {
     fit_stretch_twist(rows, s);
     twist[mirrored] = s.natural_twist.value * s.radius.value;
     coupling[mirrored] = s.coupling.value;
+    shape[mirrored] = tube.shape;
+    shape[mirrored].twist = s.natural_twist.value;
+    move_inner_shift(run, options.largest_shear, shape[mirrored]);
     EXPECT_NEAR(s.EA.value, 4639.8, 5);
   }
   EXPECT_NEAR(twist[0], -0.00317, 0.0001);
   EXPECT_NEAR(twist[1], -twist[0], 1e-5);
   EXPECT_NEAR(coupling[1], -coupling[0], 0.2);
+  // That of the untwisted tube is 0.00213 rad and +8.3e-5 nm.
+  EXPECT_NEAR(shape[0].arc_shift, 0.002234, 2e-6);
+  EXPECT_NEAR(shape[0].height_shift, -3.9e-5, 1e-6);
+  EXPECT_NEAR(shape[1].arc_shift, -shape[0].arc_shift, 1e-6);
+  EXPECT_NEAR(shape[1].height_shift, shape[0].height_shift, 1e-6);
 }
 
 // The ends of a tube with no threefold axis are different in different bending planes.
