@@ -567,6 +567,15 @@ void add_gather(CLI::App& app, Verbs& v) {
   c->callback([&v] { v.code = gather_command(v.gather); });
 }
 
+// An option of earlier versions: refused with what to do instead.
+void add_retired(CLI::App* c, const std::string& name, const std::string& remedy) {
+  c->add_option_function<std::string>(
+       name,
+       [name, remedy](const std::string&) { throw InputError({"", 0, name}, "is no option any more", remedy); }, "")
+      ->expected(0, 1)
+      ->group("");
+}
+
 // A verb of earlier versions.
 void add_plan(CLI::App& app) {
   CLI::App* c = app.add_subcommand("plan", "")->group("");
@@ -612,6 +621,10 @@ void add_bench(CLI::App& app, Verbs& v) {
   add_instructions(c, v.bench.instructions, "the contact", instruction_sets().front());
   add_device(c, v.bench.device, "none");
   c->add_flag("--json", v.bench.json, "JSON");
+  const std::string export_it = "export the scene (ropewalk export SCENE --lammps DIR) and read LAMMPS's own \"Loop time\"";
+  add_retired(c, "--lammps", export_it);
+  add_retired(c, "--plain", export_it);
+  add_retired(c, "--parts", export_it + " on several ranks");
   c->callback([&v] {
     wait_briefly(v.argv, *std::max_element(v.bench.threads.begin(), v.bench.threads.end()));
     v.code = bench_command(v.bench);

@@ -233,8 +233,18 @@ Section effective_section(const ParameterSet& set) {
   return s;
 }
 
+// The stiffnesses as those of a carbon wall of this radius.
+void print_section(const ParameterSet& set) {
+  const Section s = effective_section(set);
+  fmt::print(
+      "\nAs bonds of rigid elements of {:.4g} nm (A = 2 pi r t, t = 0.335 nm; published (10,10) in brackets)\n"
+      "  kn {:.5g} nN/nm^3 [759.4]  ks {:.5g} nN/nm^3 [338.1]  A {:.4g} nm^2 [1.427]  I {:.4g} nm^4 [0.348]  "
+      "J {:.4g} nm^4 [0.696]\n  E {:.4g} GPa [1030]  G {:.4g} GPa [459]\n",
+      set.element_length, s.kn, s.ks, s.A, s.I, s.J, s.E, s.G);
+}
+
 void print_set(const ParameterSet& set) {
-  fmt::print("{} ({},{})  {}\n{}\n", set.name, set.chirality.n, set.chirality.m, set.reference,
+  fmt::print("{}{}  {}\n{}\n", set.name, set.filament ? "" : " " + tube_name(set), set.reference,
              grade_of(set).words());
   std::string section;
   for (const Quantity& q : set.quantities) {
@@ -244,12 +254,7 @@ void print_set(const ParameterSet& set) {
                q.standard_error ? measured_text(q) : fmt::format("{:.7g}, error not known", q.value), q.unit,
                q.origin, q.note);
   }
-  const Section s = effective_section(set);
-  fmt::print(
-      "\nAs bonds of rigid elements of {:.4g} nm (A = 2 pi r t, t = 0.335 nm; published (10,10) in brackets)\n"
-      "  kn {:.5g} nN/nm^3 [759.4]  ks {:.5g} nN/nm^3 [338.1]  A {:.4g} nm^2 [1.427]  I {:.4g} nm^4 [0.348]  "
-      "J {:.4g} nm^4 [0.696]\n  E {:.4g} GPa [1030]  G {:.4g} GPa [459]\n",
-      set.element_length, s.kn, s.ks, s.A, s.I, s.J, s.E, s.G);
+  if (!set.filament) print_section(set);
   if (set.provenance.empty()) return;
   fmt::print("\n[provenance]\n");
   for (const auto& [key, value] : set.provenance) fmt::print("  {:<18}{}\n", key, value);
@@ -261,13 +266,14 @@ std::string calibration_page(const ParameterSet& set) {
                      "\n<body>\n<main>\n<p class=\"kicker\">Ropewalk: a parameter set</p>\n<h1>" +
                      escape_markup(set.name) + "</h1>\n";
   html +=
-      paragraph(fmt::format("The ({},{}) tube: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², radius {:.5g} nm.",
-                            set.chirality.n, set.chirality.m, set.bond.stretch * units::eV_in_nN_nm,
-                            set.bond.bend * units::eV_in_nN_nm, set.bond.twist * units::eV_in_nN_nm, set.radius));
+      paragraph(fmt::format("{}: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², {} {:.5g} nm.",
+                            set.filament ? "A filament" : "The " + tube_name(set) + " tube", set.bond.stretch * units::eV_in_nN_nm,
+                            set.bond.bend * units::eV_in_nN_nm, set.bond.twist * units::eV_in_nN_nm,
+                            set.filament ? "contact radius" : "radius", set.radius));
   html += paragraph("<b>" + escape_markup(grade_of(set).words()) + "</b>");
   html += heading("Stretch, twist and bend") + elastic_part(set, figures);
   html += heading("Contact") + contact_part(set, figures);
-  html += heading("As bonds of rigid elements") + section_part(set);
+  if (!set.filament) html += heading("As bonds of rigid elements") + section_part(set);
   html += heading("Parameters") + parameters_part(set.name, set.reference, set.quantities);
   html += heading("Where it comes from") + provenance_part(set);
   return html + "</main>\n</body>\n</html>\n";

@@ -523,7 +523,7 @@ struct AtomFiles::Impl {
   std::unique_ptr<atom_readers::Reader> reader;
   std::string file;
   bool cut_off = false, states_time = true;
-  std::vector<std::int64_t> first_ids;  // of the first frame, in rising order
+  std::vector<std::int64_t> first_ids;  // ids in the first frame, in rising order
 
   void open() {
     const File& f = files[at];

@@ -14,7 +14,7 @@ namespace ropewalk {
 struct AtomFrame {
   std::vector<Vector3> positions;   // nm
   std::vector<Vector3> velocities;  // nm/ps; empty: the file has none
-  std::vector<char> carbon;         // of each atom
+  std::vector<char> carbon;         // whether each atom is carbon
   AtomBox box;
   double time = 0;  // ps
   std::int64_t step = 0;

@@ -71,7 +71,7 @@ class ElementFit {
   std::vector<LabelledAtom> atoms_;  // element by element
   std::vector<Place> places_;
   std::vector<std::size_t> begin_;        // first atom of each element, and their number
-  std::vector<Eigen::Matrix4d> inverse_;  // of the normal equations of each element
+  std::vector<Eigen::Matrix4d> inverse_;  // inverse normal equations of each element
 };
 
 }  // namespace ropewalk

@@ -27,7 +27,7 @@ enum class Kind : unsigned char { other, edge, regular };
 
 long floored(long a, long b) { return a / b - ((a % b != 0) && ((a < 0) != (b < 0)) ? 1 : 0); }
 
-struct Vector {  // of the lattice
+struct Vector {  // lattice vector
   int p = 0, q = 0;
   bool operator<(const Vector& o) const { return std::tie(p, q) < std::tie(o.p, o.q); }
   bool zero() const { return p == 0 && q == 0; }
@@ -254,7 +254,7 @@ class Search {
 
   struct Closures {
     Vector around;            // zero: there is none
-    Vector along;             // of an endless tube
+    Vector along;             // period of an endless tube
     Vector3 period{0, 0, 0};  // nm: the site that lies `along` further is here
     bool ring = false;
   };

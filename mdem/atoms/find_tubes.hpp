@@ -40,7 +40,7 @@ void trim(FoundTube& tube);
 void turn_sites(FoundTube& tube, int parts);
 
 struct FoundTubes {
-  std::vector<FoundTube> tubes;    // from the middle of all of them outwards
+  std::vector<FoundTube> tubes;    // ordered from the middle of all of them outwards
   std::vector<Vector3> positions;  // nm, of all atoms: those of a tube are the images that hang together
   long loose = 0;                  // carbon atoms in no tube
   long sheets = 0;                 // connected parts of them that are larger than 100 atoms, and no tubes

@@ -62,7 +62,7 @@ struct GatherOptions {
   // (io/log_mean.hpp); 0: the last row.
   double mean_ps = 0;
   bool series = false;               // every row of every log instead
-  std::vector<std::string> columns;  // of the log; empty: all, and result_columns()
+  std::vector<std::string> columns;  // log columns; empty: all, and result_columns()
   // Gets a sentence for each point whose means have no error; null: nobody asks.
   std::vector<std::string>* short_of = nullptr;
 };

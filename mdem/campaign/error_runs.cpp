@@ -89,6 +89,7 @@ class InputsOf {
     for (const InputNumber& n : numbers_) {
       if (n.of != Of::set || n.index != k) continue;
       const auto in = [&](const char* section) { return n.key.rfind(section, 0) == 0; };
+      const bool of_section = in("tube.") || in("filament.");
       const double sigma = relative_error(n);
       const std::string name = n.key.substr(n.key.rfind('.') + 1);
       if (in("bond.anharmonic.")) {
@@ -99,12 +100,12 @@ class InputsOf {
         if (!n.standard_error)
           none += (none.empty() ? "" : ", ") + name;
         else if (name == "GJ")
-          varied(name, sigma, n.key, {n.key, "bond.kGA"});
+          varied(name, sigma, set.filament ? "" : n.key, {n.key, "bond.kGA"});
         else if (name != "kGA")
-          varied(name, sigma, n.key, {n.key});
-      } else if (in("tube.") && sigma >= exact) {
+          varied(name, sigma, set.filament ? "" : n.key, {n.key});
+      } else if (of_section && sigma >= exact) {
         varied(name, sigma, "", {n.key});
-      } else if (in("tube.") && sigma > 0) {
+      } else if (of_section && sigma > 0) {
         out_.not_varied.push_back(fmt::format("{}{} (known to {:.1g})", name, of, sigma));
       }
     }

@@ -39,7 +39,7 @@ class ErrorRuns {
   ErrorRuns(const RunDirectory& base, const Scene& scene, const Prepared& prepared, bool again)
       : base_(base), scene_(scene), prepared_(prepared), again_(again) {}
 
-  // In its directory below `errors`, with the number raised (`plus`) or lowered. Returns the exit code of the run.
+  // Runs the scene with the number raised (`plus`) or lowered, in its directory below `errors`; returns the exit code.
   int run(const VariedNumber& source, bool plus) const;
 
  private:

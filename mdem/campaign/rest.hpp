@@ -41,8 +41,8 @@ RestSide rest_side(const std::vector<LogRow>& log, const std::vector<LimitRecord
 struct RestValue {
   double value = 0;
   double start = 0;  // half of the difference of both sides
-  double drift = 0;  // of what they still creep (observe/approach.hpp): of both alike, since they creep together
-  double statistics = 0;  // of their noise
+  double drift = 0;  // creep that is still to come (observe/approach.hpp): both sides' alike, since they creep together
+  double statistics = 0;  // standard error by noise
   double error() const { return std::hypot(start, drift, statistics); }
 };
 

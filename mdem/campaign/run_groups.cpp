@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 // The runs of a campaign; those that differ in their seed alone are one group.
 std::vector<RunGroup> groups_of(const CampaignDirectory& dir) {
   const Sweep sweep = read_campaign(dir);
-  std::vector<std::string> keys = sweep.keys();  // in the order of the values of replicates
+  std::vector<std::string> keys = sweep.keys();  // keys in the order of the values of replicates
   keys.erase(std::remove(keys.begin(), keys.end(), "start.seed"), keys.end());
   const auto first = std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return sweep.varies(key); });
   std::vector<RunGroup> groups;

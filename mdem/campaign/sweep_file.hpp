@@ -32,14 +32,14 @@ namespace ropewalk {
 struct SweepAxis {
   std::string key;                  // "rope.tubes"
   std::vector<std::string> values;  // as TOML
-  int line = 0;                     // in the file of the sweep
+  int line = 0;                     // line in the file of the sweep
 };
 
 // [threshold] the critical value of a key, for `ropewalk threshold`.
 struct ThresholdQuestion {
   std::string key, column = "amplitude_nm";
   double from = 0, to = 0;
-  double above = 1;                     // in the unit of the column
+  double above = 1;                     // bound in the unit of the column
   std::optional<RopeShape> shape = {};  // that the rope takes, in place of a column that passes a value
   double accuracy = 0.02;               // the bracket is narrowed to this part of its middle
 };
@@ -53,7 +53,7 @@ struct Sweep {
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
   std::optional<ThresholdQuestion> threshold;
-  std::vector<std::string> keys() const;      // of all axes
+  std::vector<std::string> keys() const;      // keys of all axes
   bool varies(const std::string& key) const;  // has more than one value
 };
 
@@ -63,8 +63,8 @@ Sweep read_sweep(const std::string& path);
 Sweep sweep_of_text(const std::string& text, const std::string& path, const std::string& scene = "");
 
 struct SweepPoint {
-  std::string name;                 // of its directory: "tubes-7_seed-1"
-  std::vector<std::string> values;  // of keys(), as TOML
+  std::string name;                 // name of its directory: "tubes-7_seed-1"
+  std::vector<std::string> values;  // values of keys(), as TOML
   std::string text;                 // its scene
   std::string start;                // name of the run that it goes on from; empty: none
   // Found out where its scene was checked:
@@ -91,10 +91,10 @@ std::vector<SweepPoint> starts_of(const Sweep& sweep, const std::vector<SweepPoi
 struct Replicates {
   // "tubes = 7, moment_nN_nm = 35": the keys that have more than one value. Without such keys, "4 seeds".
   std::string name;
-  std::vector<std::string> values;  // of the keys without the seed
+  std::vector<std::string> values;  // values of the keys without the seed
   std::vector<SweepPoint> points;
 };
-// In the order of the points.
+// One entry for each setting, in the order of the points.
 std::vector<Replicates> replicates_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
 // Whether two scenes that differ in their seeds move apart: by random places, velocities or strengths at the start,
 // or by random numbers on the way. Both are prepared.

@@ -21,7 +21,7 @@ struct Trial {
   bool cut_short = false;             // it did not pass, and a [[stop]] of the scene ended it before its time
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
   std::optional<double> turn;         // rad, of the ends of the rope about its axis, mean under the whole load
-  std::string shape;                  // of the rope then (observe/rope_shape.hpp); empty: not known
+  std::string shape;                  // shape of the rope then (observe/rope_shape.hpp); empty: not known
   std::string scene_hash;             // of its scene, parameter sets and state file
   std::string first_limit = {};       // key of the limit that was passed first; empty: none was, or it is not known
   std::optional<double> first_limit_time = {};  // ps
@@ -33,7 +33,7 @@ struct Threshold {
   double below = 0, above = 0;  // the bracket of the bisection: the lowest values between which the outcome changes
   bool outside = false;         // passed at all values that were tried, or at none
   bool falling = false;         // passed below the threshold and not above it
-  int changes = 0;              // of the outcome, from value to value; more than one: no single threshold
+  int changes = 0;              // changes of the outcome from value to value; more than one: no single threshold
   double middle() const { return 0.5 * (below + above); }
 };
 // Brackets the threshold of these trials, in any order, in a search from `from` to `to`.
@@ -65,19 +65,19 @@ class TrialHashes {
  private:
   const Sweep& sweep_;
   const SweepPoint& point_;
-  std::string head_, tail_;  // of the text around the value, with the files behind
+  std::string head_, tail_;  // text before and after the value, with the files behind
   bool plain_;               // the value stands in one place
 };
 // Trials of earlier searches by the name of their point.
 using KnownTrials = std::map<std::string, std::vector<Trial>>;
-// From the runs of this point in the directory, and from its known trials.
+// Trials from the runs of this point in the directory, and from its known trials.
 Threshold threshold_of(const CampaignDirectory& dir, const Sweep& sweep, const SweepPoint& point,
                        const KnownTrials& known);
 
 // Points that differ in their seed alone.
 struct PhasePoint {
   std::string name;
-  std::vector<std::string> values;  // of the keys, without the seed
+  std::vector<std::string> values;  // values of the keys, without the seed
   std::vector<Threshold> seeds;
   int tubes = 0;
   double length = 0, radius = 0;      // nm, of the rope; zero where it is none

@@ -27,7 +27,7 @@ struct Description {
   std::string program;  // the name of its file
   std::string version;
   std::string long_text;                                           // ends the man page; lines are kept
-  nlohmann::ordered_json more = nlohmann::ordered_json::object();  // of a program alone, for describe json
+  nlohmann::ordered_json more = nlohmann::ordered_json::object();  // what describe json says of a program alone
   // For completion, besides those that an option lists itself: values by the option, as "--kind", or the verb that
   // takes them.
   std::map<std::string, std::vector<std::string>> values = {};

@@ -76,7 +76,7 @@ struct PictureArguments {
   std::string colour;               // a word of colour_words(); empty: bending moment
   bool sections = false;
   double width = 1040, highest = 200;  // pixels, of the figure and of each state
-  double zoom = 2;                     // of a PNG
+  double zoom = 2;                     // pixels of a PNG for one of the figure
   bool force = false;
 };
 int picture_command(const PictureArguments& arguments);
@@ -85,11 +85,11 @@ struct ViewArguments {
   std::string dir;
   std::string out;            // the page; empty: DIR/view.html
   int frames = 100;           // at most
-  double megabytes = 15;      // of the page, at most
+  double megabytes = 15;      // largest size of the page
   std::string movie;          // .webm or .mp4 to write instead
-  std::string from = "side";  // of the movie: as of PictureArguments
-  std::string colour;         // of the movie: as of PictureArguments
-  double fps = 15;            // of the movie
+  std::string from = "side";  // view of the movie, as in PictureArguments
+  std::string colour;         // colours of the movie, as in PictureArguments
+  double fps = 15;            // frames per second of the movie
   int width = 1280;           // pixels, of the movie
   bool force = false;
 };
@@ -99,7 +99,7 @@ struct RestArguments {
   std::string scene;
   std::string out;                  // empty: runs/NAME-rest
   std::optional<double> viscosity;  // eV ps/nm^3
-  double tolerance = 0.02;          // of the geometric twist, within which both sides agree
+  double tolerance = 0.02;          // part of the geometric twist, within which both sides agree
   int jobs = 0;                     // 0: one for each core
   bool by_statics = false;          // by Newton's method, without runs
   bool force = false;
@@ -199,7 +199,7 @@ int new_command(const NewArguments& arguments);
 
 struct CheckArguments {
   std::string path;       // a scene, or the directory of a run
-  bool accuracy = false;  // of a run, by a finer model
+  bool accuracy = false;  // compares a run with a finer model
   double stretch = 4;     // ps
   std::string against;    // directory of a finer run of the same scene; empty: a stretch is run
 };
@@ -215,7 +215,7 @@ int energy_command(const EnergyArguments& arguments);
 
 struct BenchArguments {
   std::string scene;         // a file, or a name of --list
-  std::string law;           // of a named scene; empty: line
+  std::string law;           // contact law of a named scene; empty: line
   std::string instructions;  // for the contact; empty: the machine's best
   std::string device;        // empty: none
   long steps = 200;
@@ -239,7 +239,7 @@ int cite_command(const std::string& directory);
 
 struct AtomsArguments {
   std::string path;         // directory of a run, or a state file
-  SingleState state;        // of a state file, but for its source
+  SingleState state;        // a state file, but for its source
   std::string out;          // .data, .xyz or .extxyz
   long frame = -1;          // of a run; from the end if negative
   std::string at;           // limit, whose place and time are wanted instead

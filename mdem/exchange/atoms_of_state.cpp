@@ -17,6 +17,7 @@
 #include "io/limits_file.hpp"
 #include "io/removal.hpp"
 #include "run/colours.hpp"
+#include "run/events_file.hpp"
 
 namespace ropewalk {
 namespace {
@@ -140,6 +141,13 @@ AtomicState state_in_scene(const Scene& scene, const Prepared& prepared, const S
   return out;
 }
 
+std::vector<char> broken_flags(std::size_t elements, const std::vector<int>& broken) {
+  std::vector<char> flags;
+  if (!broken.empty()) flags.assign(elements, 0);
+  for (const int e : broken) flags[static_cast<std::size_t>(e)] = 1;
+  return flags;
+}
+
 AtomicState state_of_frame(const RunDirectory& dir, long frame) {
   Scene scene = read_run_scene(dir);
   const Prepared prepared = prepare(scene);
@@ -153,7 +161,9 @@ AtomicState state_of_frame(const RunDirectory& dir, long frame) {
   frames->seek(static_cast<std::size_t>(wanted));
   StoredFrame stored;
   frames->next(prepared.topology, stored);
-  return state_in_scene(scene, prepared, stored.state);
+  AtomicState out = state_in_scene(scene, prepared, stored.state);
+  out.broken = StoredEvents(dir.events(), prepared.topology).broken_at(stored.state.time);
+  return out;
 }
 
 AtomicState state_of_file(const SingleState& state, const std::string& path) {
@@ -164,6 +174,7 @@ AtomicState state_of_file(const SingleState& state, const std::string& path) {
   out.state = std::move(found.built.state);
   out.interaction = std::move(found.interaction);
   out.held.assign(out.state.size(), 0);
+  out.broken = broken_flags(out.state.size(), found.broken);
   out.title = fs::path(path).filename().string();
   return out;
 }
@@ -225,7 +236,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
         parts.back().end = e + 1;
       else if (wanted)
         parts.push_back({t, e, e + 1});
-      before = wanted;
+      before = wanted && (s.broken.empty() || !s.broken[index_of(s.topology, t, e)]);
     }
   }
   if (parts.empty())
@@ -236,7 +247,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
 WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& parts, const std::string& path,
                             const std::string& potential) {
   const AtomFormat format = atom_format_of(path);
-  const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts);
+  const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts, s.broken);
   WrittenAtoms out;
   std::optional<AtomForces> forces;
   try {

@@ -19,11 +19,14 @@ struct AtomicState {
   Topology topology;
   State state;
   Interaction interaction;
-  std::vector<char> held;  // of each element: it is held or driven in the run
-  std::string title;       // "RUN at 243 ps"
+  std::vector<char> held;    // of each element: it is held or driven in the run
+  std::vector<char> broken;  // of each element: its tube has broken behind it; empty: none has
+  std::string title;         // "RUN at 243 ps"
 };
 
 AtomicState state_in_scene(const Scene& scene, const Prepared& prepared, const State& state);
+// The same flags, from the elements behind which tubes have broken.
+std::vector<char> broken_flags(std::size_t elements, const std::vector<int>& broken);
 // A frame of a run: number `frame` from 0, from the end if negative. Throws InputError where there is none.
 AtomicState state_of_frame(const RunDirectory& dir, long frame);
 // A state file.
@@ -47,7 +50,7 @@ struct AtomSelection {
   int around_tube = -1, around_element = -1;  // those near this element; -1: anywhere
   double around_nm = 12;                      // the diameter of that place
 };
-// Stretches of tubes. Throws InputError where nothing is left.
+// Stretches of tubes; none goes across a break. Throws InputError where nothing is left.
 std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& selection);
 
 // Energies of a part (eV): of the model, and of its atoms less those of the same atoms of a straight tube at rest
@@ -55,7 +58,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
 struct PartComparison {
   TubePart part;
   long atoms = 0;                 // free ones
-  double bonds = 0, contact = 0;  // of the model; half of each contact with other parts
+  double bonds = 0, contact = 0;  // model's energies, eV; half of each contact with other parts
   double placed = 0, relaxed = 0;
   // The flattest section of the relaxed atoms: thickness over width, 1 for a round one.
   double flatness = 1;

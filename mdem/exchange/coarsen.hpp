@@ -51,7 +51,7 @@ class Coarsening {
   const State& state() const { return state_; }
   bool has_velocities() const { return !frame_.velocities.empty(); }
   std::vector<SectionShape> shapes() const;
-  // Of each element: its atoms over its sites.
+  // Each element's cross-section: its atoms over its sites.
   std::vector<double> filled() const;
   // Goes to the next frame; false at the end.
   bool next();
@@ -71,7 +71,7 @@ class Coarsening {
   Topology topology_;
   std::vector<ElementFit> fits_;
   std::vector<CoarseTube> tubes_;
-  std::vector<Vector3> positions_;  // of the present frame, for atoms of elements: the images that hang together
+  std::vector<Vector3> positions_;  // atoms of elements in the present frame: the images that hang together
   State state_;
 };
 

@@ -34,6 +34,7 @@ void copy_run(const RunDirectory& from, const RunDirectory& to, RunListener& lis
   if (fs::exists(from.state())) copy(from.state(), to.state(), all);
   if (fs::exists(from.limits())) copy(from.limits(), to.limits(), all);
   copy(from.log(), to.log(), c.files.log.bytes);
+  if (c.files.events.bytes > 0) copy(from.events(), to.events(), c.files.events.bytes);
   const FrameFormat format = format_of(from.frames());
   NewFrames(to.frames(format), format, 0, from.frames(), c.files.frames.bytes).replace();
   copy(from.manifest(), to.manifest(), all);
@@ -55,6 +56,9 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   start.strand_holes = groups.strand_holes;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
+  const bool others_break = std::any_of(scene.drives.begin(), scene.drives.end(),
+                                        [](const auto& drive) { return drive->table().name == "failure"; });
+  start.tubes_came_broken = !scene.memory.broken.empty() && !others_break;
   const RunDirectory here{"."};
   for (std::size_t k = 0; k < scene.sets.size(); ++k)
     start.parameters.push_back(fs::path(here.parameters(k)).filename().string());
@@ -100,7 +104,7 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
 
 constexpr const char* readme =
     "Run:              lmp-ropewalk -in in.rope\n"
-    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope\n"
+    "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope      (or, with SLURM: sbatch job.sh)\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
 // `run` divides steps with which its energy balance does not close, and LAMMPS keeps them.
@@ -142,15 +146,17 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.dissipated = s.dissipated();
   header.heat = s.heat();
   LammpsStart start = start_of(scene, s);
+  const LammpsScript script = script_of(scene, p, s);
   for (const auto& [path, content] :
        {std::pair{dir.tubes(), tubes_csv(p.topology)},
         std::pair{dir.first_state(),
                   state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory())},
-        std::pair{dir.input(), lammps_input(script_of(scene, p, s))}}) {
+        std::pair{dir.input(), lammps_input(script)}}) {
     start.sums[fs::path(path).filename().string()] = hash_hex(content);
     write_file_atomically(path, content);
   }
   write_file_atomically(dir.start(), start_json(start));
+  write_file_atomically(dir.job(), lammps_job(script, p.topology.elements()));
   write_file_atomically(dir.readme(), readme);
 }
 

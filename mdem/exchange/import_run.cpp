@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <tuple>
 
 #include "exchange/export_run.hpp"
@@ -14,6 +16,7 @@
 #include "io/frames/frames.hpp"
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
 #include "run/pending_files.hpp"
 #include "run/step_control.hpp"
@@ -64,6 +67,10 @@ class Import {
     remove_run_parts(dir_);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.files.log.bytes);
     const std::string there = dir_.frames();
+    if (checkpoint_.files.events.bytes > 0)
+      event_text_ = read_file(dir_.events()).substr(0, checkpoint_.files.events.bytes);
+    const std::vector<TubeBreak> breaks = tube_breaks(dir_.events());
+    told_of_break_ = std::any_of(breaks.begin(), breaks.end(), [](const TubeBreak& b) { return b.time_ps > 0; });
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.files.frames.bytes);
     const std::int64_t from = reached_;
     watch_.inherit_from(checkpoint_.limits.limits, from);
@@ -83,13 +90,29 @@ class Import {
     State state;
     Vec3Array force, torque;
     while (states.next(state, force, torque)) {
+      if (state.step <= reached_) continue;
+      std::vector<double> memory = states.memory();
+      take_events(memory, state, path);
       const auto row = rows_.find(state.step);
-      if (state.step <= reached_ || row == rows_.end()) continue;
+      if (row == rows_.end()) continue;
       state.time = row->second.time;
       force_.force = force;
       force_.torque = torque;
-      memory_ = states.memory();
+      memory_ = std::move(memory);
       add(state, row->second);
+    }
+  }
+
+  // Those since the state before. They count once a later state does.
+  void take_events(std::vector<double>& memory, const State& state, const std::string& path) {
+    try {
+      for (TermEvent& e : ropewalk::take_events(memory, prepared_.topology.elements())) {
+        if (!(e.time <= state.time + prepared_.time_step))
+          throw std::runtime_error(fmt::format("it has an event at {:.9g} ps", e.time));
+        events_.push_back(std::move(e));
+      }
+    } catch (const std::runtime_error& e) {
+      throw InputError({path, 0, ""}, fmt::format("state of step {}: {}", state.step, e.what()), run_again);
     }
   }
 
@@ -115,13 +138,19 @@ class Import {
                        run_again);
   }
 
-  // Energies follow from a state and the scene.
-  void hold_to_scene(const State& state, const NeighbourList& list, const LammpsRow& row) const {
+  // Energies follow from a state, what it remembers, and the scene. Returns the tubes, cut where they have broken.
+  Topology hold_to_scene(const State& state, const NeighbourList& list, const LammpsRow& row) const {
     Interaction in = prepared_.interaction;
-    in.terms.clear();
     in.damping = {};
     Forces own(state.size());
-    ForceEngine().compute(prepared_.topology, in, list, state, own);
+    ForceEngine engine;
+    try {
+      engine.set_memory(in, memory_, prepared_.topology.elements());
+      engine.prepare_again(prepared_.topology, list, state);
+    } catch (const std::runtime_error& e) {
+      throw InputError({files_.states(), 0, ""}, fmt::format("state of step {}: {}", state.step, e.what()), run_again);
+    }
+    engine.compute(prepared_.topology, in, list, state, own);
     const double bonds = row.stretch + row.shear + row.bend + row.twist;
     for (const auto& [name, here, there] : {std::tuple{"bonds", own.energy.bonds(), bonds},
                                             std::tuple{"contacts", own.energy.vdw, row.vdw},
@@ -132,12 +161,14 @@ class Import {
                                      "the scene",
                                      there, name, row.step, here),
                          run_again);
+    const std::vector<char>* broken = engine.terms().broken_bonds();
+    return broken ? cut_behind(prepared_.topology, *broken) : prepared_.topology;
   }
 
   void add(const State& state, const LammpsRow& from) {
     NeighbourList list(prepared_.interaction, default_skin(prepared_.interaction));
     list.build(prepared_.topology, state);
-    hold_to_scene(state, list, from);
+    const Topology tubes_now = hold_to_scene(state, list, from);
     EnergyAccount account;
     account.time_step = prepared_.time_step;
     account.moment = moment_at(end_drives(prepared_.loads, prepared_.topology), from.time);
@@ -151,21 +182,37 @@ class Import {
     account.first_energy = checkpoint_.first_energy;
     account.first = first_;
     account.ends = readings_at(state);
-    log_ += log_line(log_row(observer_, scene_, prepared_.topology, state, account));
-    check_limits(state, list, account);
+    log_ += log_line(log_row(observer_, scene_, tubes_now, state, account));
+    check_limits(tubes_now, state, list, account);
     check_account(account, state.step);
-    (*frames_)->write(prepared_.topology, state, element_colours(prepared_.topology, prepared_.interaction, state));
+    (*frames_)->write(prepared_.topology, state,
+                      element_colours(prepared_.topology, prepared_.interaction, state, tubes_now));
+    add_events();
     prepared_.state = state;
     last_ = from;
     reached_ = state.step;
     ++taken_;
   }
 
+  void add_events() {
+    if (events_.empty()) return;
+    if (event_text_.empty()) event_text_ = events_header();
+    event_text_ += event_lines(prepared_.topology, events_);
+    const auto first = std::find_if(events_.begin(), events_.end(), is_break);
+    if (!told_of_break_ && first != events_.end()) {
+      listener_.tell(fmt::format("the first tube broke at {:.4g} ps: {}; events.csv lists every break", first->time,
+                                 place_in_words(prepared_.topology, watch_.held(), first->a)));
+      told_of_break_ = true;
+    }
+    events_.clear();
+  }
+
   // LAMMPS watches no limits: they are looked for in the states that it left.
-  void check_limits(const State& state, const NeighbourList& list, const EnergyAccount& account) {
+  void check_limits(const Topology& tubes_now, const State& state, const NeighbourList& list,
+                    const EnergyAccount& account) {
     const bool relax = scene_.run.mode == RunOptions::Mode::relax;
     const RunEnergies energies = relax ? RunEnergies() : RunEnergies{energy_drift(account), account.kinetic};
-    for (const std::string& line : watch_.check(prepared_.topology, state, list, energies, true))
+    for (const std::string& line : watch_.check(prepared_.topology, tubes_now, state, list, energies, true))
       listener_.tell(line);
   }
 
@@ -211,6 +258,7 @@ class Import {
     simulation.inherit_from(gauges_.sums);
     checkpoint_.files.log = mark_of(log_);
     checkpoint_.files.frames = (*frames_)->mark();
+    if (!event_text_.empty()) checkpoint_.files.events = mark_of(event_text_);
     checkpoint_.files.log.step = checkpoint_.files.frames.step = reached_;
     checkpoint_.snapshot = nullptr;
     checkpoint_.ends_for = StopReason::none;
@@ -223,6 +271,7 @@ class Import {
     const StateFiles end = state_files(simulation, dir_.final_state());
     if (scene_.run.mode == RunOptions::Mode::relax) judge_rest(simulation, m);
     write_file_atomically(dir_.log(), log_);
+    if (!event_text_.empty()) write_file_atomically(dir_.events(), event_text_);
     frames_->replace();
     if (!end.memory.empty()) write_file_atomically(dir_.final_memory(), end.memory);
     write_file_atomically(dir_.final_state(), end.state);
@@ -268,10 +317,11 @@ class Import {
   LammpsRow last_;
   EnergyMark mark_;  // before the states that are not judged yet
   std::int64_t marked_at_ = 0;
-  bool told_of_account_ = false, at_rest_ = true;
+  bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
-  std::vector<double> memory_;  // of the force terms, in the last state
-  std::string log_;
+  std::vector<double> memory_;  // force terms' memory in the last state
+  std::vector<TermEvent> events_;  // since the last state that was taken
+  std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;
   long taken_ = 0;
 };

@@ -79,7 +79,9 @@ std::optional<AtomicState> state_at_limit(const RunDirectory& dir, const LimitPl
     why = "this program on this processor does not pass the limit at that step";
     return std::nullopt;
   }
-  return state_in_scene(scene, prepared, simulation.state());
+  AtomicState out = state_in_scene(scene, prepared, simulation.state());
+  if (const std::vector<char>* broken = simulation.broken_bonds()) out.broken = *broken;
+  return out;
 }
 
 }  // namespace ropewalk

@@ -14,14 +14,14 @@ namespace ropewalk {
 struct Equilibrium {
   enum class Stability { stable, unstable, unknown };
 
-  std::int64_t step = 0;  // of the row of log.csv with the same state
+  std::int64_t step = 0;  // step of the row of log.csv with the same state
   double time = 0;        // ps
   Stability stability = Stability::unknown;
   double growth = std::numeric_limits<double>::quiet_NaN();  // 1/ns, of the fastest motion; NaN: not known
   double error = std::numeric_limits<double>::quiet_NaN();   // 1/ns: smaller rates cannot be told from zero
   double force = 0, moment = 0;                              // eV/nm, eV: the largest that is left
   double above = 0;                                          // eV above the minimum, by estimate
-  int saddles = 0;                                           // of the energy, that it left on the way
+  int saddles = 0;                                           // saddles of the energy that it left on the way
 };
 using Equilibria = std::vector<Equilibrium>;
 

@@ -220,6 +220,21 @@ void grade_line(const ParameterSet& set, Grade& grade) {
       grade);
 }
 
+// What any slender body must have. Values of another unit, or of ten times the size, lie outside for most.
+void grade_filament(const ParameterSet& set, Grade& grade) {
+  add(grade, Level::limited,
+      "a filament without a lattice: nothing here was held to atoms, its numbers are as good as its sources");
+  if (const double off = line_fit_error(set); off > known_well)
+    add(grade, off > unusable_contact ? Level::unfit : Level::limited,
+        fmt::format("the contact is off by up to {:.2g} % of the well of its table", 100 * off));
+  const double u_per_nm3_in_g_per_cm3 = units::atomic_mass_kg * 1e24;
+  const double density = set.mass_per_length / units::atomic_mass / (units::pi * set.radius * set.radius);
+  within({{"mass_per_length over pi contact_radius^2 (g/cm^3)", density * u_per_nm3_in_g_per_cm3, 0.1, 25},
+          {"sqrt(EI/EA) over contact_radius", std::sqrt(set.bond.bend / set.bond.stretch) / set.radius, 0.05, 1},
+          {"contact_radius times kink_curvature", set.radius * set.validity.kink_curvature, 0, 1}},
+         grade);
+}
+
 }  // namespace
 
 std::string Grade::words() const {
@@ -230,6 +245,10 @@ std::string Grade::words() const {
 Grade grade_of(const ParameterSet& set) {
   Grade grade;
   grade_stiffness(set, grade);
+  if (set.filament) {
+    grade_filament(set, grade);
+    return grade;
+  }
   grade_wall(set, grade);
   grade_width(set, grade);
   grade_shell(set, grade);

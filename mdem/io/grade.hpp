@@ -22,7 +22,7 @@ struct Grade {
 // and numbers that agree with one another: shell, limits of the model, anharmonic law, pull, well. unfit: a
 // stiffness known to no more than a half, a wall that is not of carbon, the line law off by more than a tenth of
 // the well, or wider than 4.2 nm, where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev. Lett.
-// 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501).
+// 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501). Filaments are limited: no atoms stand behind their numbers.
 Grade grade_of(const ParameterSet& set);
 
 // EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.
@@ -35,7 +35,7 @@ double line_fit_error(const ParameterSet& set);
 // The error of the universal law, which acts between tubes of different kinds. Negative: the set has none.
 double universal_error(const ParameterSet& set);
 // A contact law that is further off than this is of no use.
-inline constexpr double unusable_contact = 0.1;  // of the well
+inline constexpr double unusable_contact = 0.1;  // part of the well
 
 // Standard deviation, over all registries, of the energy of two real tubes side by side, over the well. Negative:
 // the set does not say.

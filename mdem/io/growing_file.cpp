@@ -78,7 +78,10 @@ void GrowingFile::patch(std::uint64_t at, std::string_view bytes) {
 }
 
 void GrowingFile::cut(std::uint64_t keep) {
-  if (uninterrupted([&] { return ::ftruncate(file_.get(), static_cast<off_t>(keep)); }) != 0) fail();
+  // A driver of FAT refuses to cut a file to the length that it has.
+  struct stat status;
+  const bool is_so_long = ::fstat(file_.get(), &status) == 0 && static_cast<std::uint64_t>(status.st_size) == keep;
+  if (!is_so_long && uninterrupted([&] { return ::ftruncate(file_.get(), static_cast<off_t>(keep)); }) != 0) fail();
   size_ = keep;
   tail_ = bytes_between(file_.get(), tail_from(keep, 0), keep);
 }

@@ -14,7 +14,7 @@ struct FileMark {
   std::uint64_t bytes = 0;
   std::uint64_t tail_from = 0;
   std::string tail;        // hash of the bytes from there on, hex
-  std::int64_t step = -1;  // of the last row or frame; -1: not known
+  std::int64_t step = -1;  // step of the last row or frame; -1: not known
 };
 
 // The mark of a file with this content, or of the first bytes of a file.

@@ -14,11 +14,11 @@ namespace ropewalk {
 struct LimitRecord {
   std::string key;   // as in the scene's [limits]
   std::string unit;  // may be empty
-  double limit = 0;  // in that unit; 0: not watched
+  double limit = 0;  // limit in that unit; 0: not watched
   double largest = 0;
   double largest_at_ps = 0;
-  int tube = -1;     // of the largest value; -1: no value
-  int element = -1;  // of the largest value, counted in the tube from 0; for a bond its first element
+  int tube = -1;     // tube with the largest value; -1: no value
+  int element = -1;  // element with the largest value, counted in the tube from 0; for a bond its first element
   bool passed = false;
   double passed_at_ps = 0;
   std::int64_t passed_at_step = 0;
@@ -58,14 +58,14 @@ struct RefinementRecord {
   std::string from, to;  // names of the directories, which stand side by side
   double time_ps = 0;
   std::int64_t step_before = 0, step_after = 0;
-  double length_before = 0, length_after = 0;  // of an element, nm
+  double length_before = 0, length_after = 0;  // lengths of an element, nm
   int elements_before = 0, elements_after = 0;
   EnergyParts before, after;
 };
 
 struct LimitsFile {
   std::vector<LimitRecord> limits;
-  std::vector<RefinementRecord> refinements;  // of this run and the runs before it, in order of time
+  std::vector<RefinementRecord> refinements;  // refinements of this run and the runs before it, in order of time
 };
 
 // Keys of an entry of "limits", of an entry of "refinements", and of the energies in the latter.

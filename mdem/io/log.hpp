@@ -21,7 +21,7 @@ class LogRow {
   double& operator[](std::string_view name) { return values_[index_of_observable(name)]; }
   double operator[](std::string_view name) const { return values_[index_of_observable(name)]; }
 
-  // In the order of observables().
+  // Values of one row, in the order of observables().
   std::vector<double>& values() { return values_; }
   const std::vector<double>& values() const { return values_; }
 

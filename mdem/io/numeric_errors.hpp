@@ -25,7 +25,7 @@ namespace ropewalk {
 
 struct NumericSource {
   std::string name;    // "elements"
-  std::string folder;  // of the run with the refined setting, within that of the errors
+  std::string folder;  // folder of the run with the refined setting, within that of the errors
   double times = 1;    // 1/(1 - 2^-p)
   double pace = 1;     // the run takes so many times as long, in ps
   std::string change;  // "elements of 0.68 nm in the place of 1.36 nm"
@@ -43,7 +43,7 @@ struct NumericRuns {
 struct WholeError {
   double value = 0;
   double statistics = 0, numerics = 0, parameters = 0, potential = 0;
-  std::vector<double> parts;  // of the numerics, by source
+  std::vector<double> parts;  // parts of the numerics, by source
   bool bound = false;         // most of them is an upper bound
   std::string decides;        // what is largest: "statistics", "potential", "elements", "GJ"; empty: nothing is
   // Of a mean over time; nan: of none. needed_ps: that an error by blocks needs, where the time is too short.
@@ -63,9 +63,9 @@ class NumericErrors {
 
   bool empty() const { return runs_.sources.empty() && runs_.starts.empty(); }
   const NumericRuns& runs() const { return runs_; }
-  // Of one value of row k of the log.
+  // Error of one value in row k of the log.
   WholeError of(std::size_t k, const Value& value) const;
-  // Of the result: its mean over the last runs().mean_ps, or its last row.
+  // Error of the result: of its mean over the last runs().mean_ps, or of its last row.
   WholeError at_end(const Value& value) const;
 
  private:

@@ -62,8 +62,12 @@ class Reader {
   ParameterSet read() {
     set_.path = path_;
     set_.hash = hash_hex(text_);
+    set_.filament = top_.has("filament");
     read_meta(top_.table("meta"));
-    read_tube(top_.table("tube"));
+    if (set_.filament)
+      read_filament(top_.table("filament"));
+    else
+      read_tube(top_.table("tube"));
     read_bond(top_.table("bond"));
     const TomlTable contact = top_.table("contact");
     if (contact.has("paper")) set_.paper = read_paper(contact.table("paper"));
@@ -81,7 +85,8 @@ class Reader {
 
  private:
   double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
-    const Quantity out = read_quantity(section, key, unit, bounds);
+    Quantity out = read_quantity(section, key, unit, bounds);
+    out.of_carbon = !set_.filament;
     order_.emplace_back(section.line(key), out);
     return out.value;
   }
@@ -95,13 +100,26 @@ class Reader {
       throw t.error("format", fmt::format("is \"{}\"", printable(format, 40)),
                     fmt::format("this program reads \"{}\"", parameter_format));
     set_.name = t.string("name");
+    read_chirality(t);
+    set_.reference = t.string("reference");
+    set_.doi = t.string_or("doi", "");
+    if (!set_.doi.empty()) check_doi(t, set_.doi);
+  }
+
+  void read_chirality(const TomlTable& t) {
+    set_.chirality = {0, 0};
+    if (set_.filament) {
+      if (t.has("chirality"))
+        throw t.error("chirality", "is that of a tube, and the set has [filament]", "take one of them away");
+      return;
+    }
+    if (!t.has("chirality"))
+      throw t.error("chirality", "is missing",
+                    "add chirality = [n, m]; what has no lattice of carbon has [filament] in place of [tube]");
     const std::vector<long> nm = t.integers("chirality", 0, 1000);
     if (nm.size() == 2) set_.chirality = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
     if (nm.size() != 2 || !set_.chirality.valid())
       throw t.error("chirality", "is not that of a tube", "write [n, m], neither negative, not both 0");
-    set_.reference = t.string("reference");
-    set_.doi = t.string_or("doi", "");
-    if (!set_.doi.empty()) check_doi(t, set_.doi);
   }
 
   // A wrong unit or chirality changes the value by a factor; relaxation changes the rolled sheet by only 2 %.
@@ -121,12 +139,46 @@ class Reader {
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
   }
 
+  void read_filament(const TomlTable& t) {
+    if (top_.has("tube"))
+      throw top_.error("tube", "is that of a carbon tube, and the set has [filament]", "take one of them away");
+    set_.radius = quantity(t, "contact_radius", "nm", Bounds::positive(1e3));
+    set_.mass_per_length = quantity(t, "mass_per_length", "u/nm", Bounds::positive(1e9)) * units::atomic_mass;
+    set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 1e3));
+    for (const char* key : {"twist_per_length", "curvature"})
+      if (t.has(key))
+        throw t.error(key, "is not in the model: elements are straight at rest, and bend alike in all directions",
+                      "leave it out; a natural twist has no say in such a filament, a natural curvature cannot be had");
+  }
+
+  // Bonds have one stiffness of bending. A filament with a natural twist, bent over many turns of it, has the
+  // harmonic mean of its two.
+  void refuse_two_bends(const TomlTable& t) const {
+    if (!t.has("EI_1") && !t.has("EI_2")) return;
+    const char* key = t.has("EI_1") ? "EI_1" : "EI_2";
+    if (!t.has("EI_1") || !t.has("EI_2"))
+      throw t.error(key, "is one of two stiffnesses, and bonds bend alike in all directions", "give EI");
+    const Bounds stiffness = Bounds::positive(1e9);
+    const double a = read_quantity(t, "EI_1", "nN nm^2", stiffness).value,
+                 b = read_quantity(t, "EI_2", "nN nm^2", stiffness).value;
+    throw t.error("EI_1", "and EI_2 are two stiffnesses, and bonds bend alike in all directions",
+                  fmt::format("give EI; a filament that twists many times over a bend has EI = 2/(1/EI_1 + 1/EI_2) = "
+                              "{:.6g} nN nm^2",
+                              2 / (1 / a + 1 / b)));
+  }
+
   void read_bond(const TomlTable& t) {
     const Bounds stiffness = Bounds::positive(1e9);
+    refuse_two_bends(t);
     set_.bond.stretch = quantity(t, "EA", "nN", stiffness) * units::nN_nm;
     set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
     set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
     if (t.has("kGA")) set_.bond.shear = quantity(t, "kGA", "nN", stiffness) * units::nN_nm;
+    if (set_.filament)
+      for (const char* part : {"anharmonic", "pull"})
+        if (t.has(part))
+          throw t.error(part, "is of the wall of a carbon tube, and the set has [filament]",
+                        "take it away: bonds of filaments are harmonic");
     if (t.has("anharmonic")) set_.anharmonic = read_anharmonic(t.table("anharmonic"));
     if (!t.has("pull")) return;
     if (!set_.anharmonic) throw t.error("pull", "goes on where [bond.anharmonic] ends, which is missing", "add it");
@@ -257,10 +309,14 @@ class Reader {
     LineParameters line;
     LineDensity& d = line.density;
     UniversalLine& u = line.universal;
-    u.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(10));
-    u.sigma = quantity(t, "sigma", "nm", Bounds::positive(10));
-    u.lj_cutoff = quantity(t, "lj_cutoff", "nm", Bounds::non_negative(100));
-    line.surface_density = quantity(t, "surface_density", "1/nm^2", Bounds::positive(1e3));
+    if (set_.filament) {
+      refuse_atoms_of_contact(t);
+    } else {
+      u.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(10));
+      u.sigma = quantity(t, "sigma", "nm", Bounds::positive(10));
+      u.lj_cutoff = quantity(t, "lj_cutoff", "nm", Bounds::non_negative(100));
+      line.surface_density = quantity(t, "surface_density", "1/nm^2", Bounds::positive(1e3));
+    }
     d.contact = 2 * set_.radius;
     d.K = quantity(t, "K", "eV/nm^2", Bounds::positive(1e9));
     d.s = quantity(t, "s", "nm", Bounds::positive(100));
@@ -275,8 +331,30 @@ class Reader {
     line.cross90_energy = quantity(t, "cross90_energy", "eV", Bounds::range(-1e6, 0));
     if (t.has("registry")) quantity(t, "registry", "1", Bounds::range(0, 1));
     check_line(t, d);
+    if (set_.filament) check_wells(t, line);
     if (t.has("universal")) read_universal(t.table("universal"), line);
     return line;
+  }
+
+  static void refuse_atoms_of_contact(const TomlTable& t) {
+    for (const char* key : {"epsilon", "sigma", "lj_cutoff", "surface_density", "registry", "universal"})
+      if (t.has(key))
+        throw t.error(key, "is of the atoms of a carbon tube, and the set has [filament]",
+                      "take it away: K, s, c, p and q are the contact of two filaments");
+  }
+
+  // A filament's well is held to its law here, since nothing else in the set says how deep it is.
+  static void check_wells(const TomlTable& t, const LineParameters& line) {
+    const LineWell well = line_parallel_well(line.density);
+    const LineWell crossed = line_crossed_well(line.density, 0.5 * units::pi);
+    const auto agree = [&](const char* key, double said, double law, const char* unit) {
+      if (std::fabs(said - law) <= 0.01 * std::fabs(law)) return;
+      throw t.error(key, fmt::format("is {:.6g} {}", said, unit),
+                    fmt::format("K, s, c, p and q give {:.6g}: correct one or the other", law));
+    };
+    agree("pair_spacing", line.pair_spacing, well.distance, "nm");
+    agree("pair_energy", line.pair_energy, well.energy, "eV/nm");
+    agree("cross90_energy", line.cross90_energy, crossed.energy, "eV");
   }
 
   static void check_line(const TomlTable& t, const LineDensity& d) {
@@ -300,6 +378,8 @@ class Reader {
   }
 
   void read_atomistic() {
+    if (set_.filament && top_.has("atomistic"))
+      throw top_.error("atomistic", "is of the lattice of a carbon tube, and the set has [filament]", "take it away");
     if (!top_.has("atomistic")) {
       if (set_.anharmonic)
         throw top_.error("atomistic", "is missing", "[bond.anharmonic] needs the coupling that stands there");
@@ -324,6 +404,11 @@ class Reader {
     if (t.has("linear_curvature")) quantity(t, "linear_curvature", "1/nm", Bounds::positive(1e3));
     if (t.has("linear_twist")) quantity(t, "linear_twist", "1", Bounds::positive(10));
     if (t.has("linear_stretch")) quantity(t, "linear_stretch", "1", Bounds::positive(1));
+    if (!set_.filament) return;
+    // A wall between held ends stays round longer; a filament has one limit of twist at any length.
+    if (t.has("endless_collapse"))
+      throw t.error("endless_collapse", "is of the wall of a carbon tube, and the set has [filament]", "take it away");
+    set_.validity.endless_collapse = set_.validity.twist_collapse;
   }
 
   void read_correlation(const TomlTable& t) {
@@ -420,7 +505,13 @@ std::string provenance_value(const ParameterSet& set, const std::string& key) {
   return "";
 }
 
-std::string tube_name(const ParameterSet& set) { return fmt::format("({},{})", set.chirality.n, set.chirality.m); }
+std::string tube_name(const ParameterSet& set) {
+  return set.filament ? set.name : fmt::format("({},{})", set.chirality.n, set.chirality.m);
+}
+
+void refuse_filament(const ParameterSet& set, const std::string& so, const std::string& instead) {
+  if (set.filament) throw InputError({set.path, 0, "filament"}, "has no lattice of atoms: " + so, instead);
+}
 
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
   for (const Quantity& q : set.quantities)
@@ -496,9 +587,9 @@ std::string universal_rows_text(const UniversalLine& u) {
 
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
-  text +=
-      fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\nchirality = [{}, {}]\nreference = {}\n", parameter_format,
-                  toml_string(set.name), set.chirality.n, set.chirality.m, toml_string(set.reference));
+  text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\n", parameter_format, toml_string(set.name));
+  if (!set.filament) text += fmt::format("chirality = [{}, {}]\n", set.chirality.n, set.chirality.m);
+  text += fmt::format("reference = {}\n", toml_string(set.reference));
   if (!set.doi.empty()) text += fmt::format("doi = {}\n", toml_string(set.doi));
   std::string section;
   for (const Quantity& q : set.quantities) {

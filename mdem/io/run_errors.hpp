@@ -28,7 +28,7 @@ struct ErrorSource {
   std::string plus, minus;  // directories of the runs, within that of the errors; no `minus`: it is only raised
   double sigma = 0;         // relative standard error; absolute where the value is 0
   double step = 0;          // h
-  std::string key;          // of the quantity, "bond.GJ"; empty: independent of all others
+  std::string key;          // key of the quantity, "bond.GJ"; empty: independent of all others
 };
 
 struct ResultError {
@@ -41,7 +41,7 @@ struct ResultError {
 class RunErrors {
  public:
   using Value = std::function<double(const LogRow&)>;
-  using Result = std::function<double(const std::vector<LogRow>&)>;  // of a log
+  using Result = std::function<double(const std::vector<LogRow>&)>;  // result of a log
 
   RunErrors() = default;
   // The logs of the runs are read from `directory`. Where they have other rows than `log`, the last ones are

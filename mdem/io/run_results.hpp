@@ -39,14 +39,14 @@ struct RunResults {
   double torque_within = none;                           // nN nm: the same of the rows before the first limit
   double bending_max = none, bending_max_ps = none;      // nN nm: largest moment across z on an end; of a bent rope
   bool bending_fell = false;                             // below 95 % of it by the end
-  double first_break_deg = none, first_break_ps = none;  // of the tubes
+  double first_break_deg = none, first_break_ps = none;  // first break of a tube
   TubeBreak first_break;
   int tubes_broken = 0;
   double strength = none, strength_N_per_tex = none,
          strength_strain = none;  // GPa: largest stress; where ends are drawn apart
   bool stress_fell = false;
   double stored_at_limit = none;  // MJ/kg: of the last row before the first limit; without one, the largest
-  double links_formed = 0, links_broken = 0, bonds_broken = 0;  // in the last row
+  double links_formed = 0, links_broken = 0, bonds_broken = 0;  // counts in the last row
 };
 
 RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <unordered_map>
 #include <utility>
 
 #include "lammps/bond_vbond.hpp"
@@ -14,6 +15,7 @@
 #include "output.h"
 #include "scene/lammps_files.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "timer.h"
@@ -22,6 +24,8 @@ namespace ropewalk::lammps {
 namespace {
 
 using namespace LMP::FixConst;
+
+constexpr int numbers_a_round = 31;  // numbers of one element
 
 // Versions of LAMMPS have different names for the call that sends the values of a fix to ghosts.
 template <class Comm>
@@ -44,9 +48,18 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   force_reneighbor = 1;  // where the engine asks for it
   next_reneighbor = -1;
   restart_global = 1;
-  comm_forward = 4;
+  const auto& terms = model_->interaction.terms;
+  remembers_ = std::any_of(terms.begin(), terms.end(), [](const auto& term) { return term->remembers(); });
+  comm_forward = remembers_ ? std::max(4, 1 + numbers_a_round) : 4;
+  if (remembers_) {
+    restart_peratom = 1;
+    maxexchange_dynamic = 1;
+    grow_arrays(atom->nmax);
+    atom->add_callback(LMP::Atom::GROW);
+    atom->add_callback(LMP::Atom::RESTART);
+  }
   vector_flag = 1;
-  size_vector = lammps_row_numbers + 4 * static_cast<int>(model_->interaction.terms.size());
+  size_vector = lammps_row_numbers + lammps_numbers_of_term * static_cast<int>(model_->interaction.terms.size());
   global_freq = 1;
   extvector = 0;
   const auto* states = find_fix<FixStates>(lmp);
@@ -54,10 +67,19 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   const StateHeader& began = *states->began();
   carried_ = began.step;
   first_skin_ = began.skin;
-  first_memory_ = states->memory();
+  for_records(states->memory(), [&](int element, const double* of, std::size_t count) {
+    if (element == the_account) accounts_.insert(accounts_.end(), of, of + count);
+  });
+  give_memory(states->memory());
   if (comm->me == 0) {
     account_ = {began.work, began.dissipated, began.heat};
   }
+}
+
+FixMotion::~FixMotion() {
+  if (!remembers_) return;
+  atom->delete_callback(id, LMP::Atom::GROW);
+  atom->delete_callback(id, LMP::Atom::RESTART);
 }
 
 int FixMotion::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
@@ -77,10 +99,10 @@ void FixMotion::init() {
            "leave -var forces plain out");
   if (engine_) {
     if (first_skin_ > 0) engine_->use_skin(std::exchange(first_skin_, 0.0));
-    if (!first_memory_.empty()) engine_->set_memory(std::exchange(first_memory_, {}));
     lead_exchanges();
     engine_->lead(engine_may_lead());
   }
+  find_longest();
 }
 
 // Fixes that read or move elements in their own ways find them in LAMMPS's arrays.
@@ -120,6 +142,7 @@ void FixMotion::reach_for(double skin) {
 void FixMotion::post_integrate() {
   if (!engine_) return;
   if (engine_->stale()) next_reneighbor = update->ntimestep;
+  if (exchanged_now()) keep_memory();
   if (!engine_->leads()) return;
   if (exchanged_now())
     engine_->give_own();
@@ -174,11 +197,24 @@ void FixMotion::pre_force(int) {
   if (engine_ && neighbor->ago == 0) {
     engine_->share_none();
     if (grip_) engine_->share(grip_->atoms().data(), static_cast<int>(grip_->atoms().size()));
+    bring_memory();
   }
   send_to_ghosts(*comm, this, 0);
 }
 
 int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*) {
+  if (round_ >= 0) {
+    const double* const begin = buffer;
+    for (int k = 0; k < count; ++k) {
+      const std::vector<double>& of = memory_of(list[k]);
+      const std::size_t from = std::min(of.size(), static_cast<std::size_t>(round_ * numbers_a_round)),
+                        to = std::min(of.size(), from + numbers_a_round);
+      *buffer++ = static_cast<double>(to - from);
+      buffer = std::copy(of.begin() + static_cast<std::ptrdiff_t>(from), of.begin() + static_cast<std::ptrdiff_t>(to),
+                         buffer);
+    }
+    return static_cast<int>(buffer - begin);
+  }
   if (engine_ && neighbor->ago == 0) engine_->share(list, count);
   double** q = orientations(lmp);
   for (int k = 0; k < count; ++k) std::copy_n(q[list[k]], 4, buffer + 4 * k);
@@ -186,9 +222,104 @@ int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*
 }
 
 void FixMotion::unpack_forward_comm(int count, int first, double* buffer) {
+  if (round_ >= 0) {
+    for (int k = 0; k < count; ++k) {
+      const auto numbers = static_cast<std::ptrdiff_t>(*buffer++);
+      memory_of(first + k).insert(memory_of(first + k).end(), buffer, buffer + numbers);
+      buffer += numbers;
+    }
+    return;
+  }
   double** q = orientations(lmp);
   for (int k = 0; k < count; ++k) std::copy_n(buffer + 4 * k, 4, q[first + k]);
 }
+
+// --- memories of force terms ---------------------------------------------------------------------------
+
+// To the own elements to which they belong.
+void FixMotion::give_memory(const std::vector<double>& numbers) {
+  if (!remembers_) return;
+  std::unordered_map<int, int> atom_of;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    memory_of(i).clear();
+    atom_of[element_of(*atom, i)] = i;
+  }
+  for_records(numbers, [&](int element, const double* of, std::size_t count) {
+    if (element < 0) return;
+    std::vector<double>& memory = memory_of(atom_of.at(element));
+    memory.insert(memory.end(), of, of + count);
+  });
+  find_longest();
+}
+
+// LAMMPS has room for the largest element that may come by, of whichever rank.
+void FixMotion::find_longest() {
+  if (!remembers_) return;
+  int own = 0;
+  for (int i = 0; i < atom->nlocal; ++i) own = std::max(own, static_cast<int>(memory_of(i).size()));
+  MPI_Allreduce(&own, &longest_, 1, MPI_INT, MPI_MAX, world);
+  maxexchange = longest_ + 1;
+}
+
+// Before elements go to other ranks.
+void FixMotion::keep_memory() {
+  if (engine_) give_memory(engine_->memory());
+}
+
+// To copies, and to the engine's next list. An element may have more numbers than LAMMPS has room for in one message.
+void FixMotion::bring_memory() {
+  std::vector<double> all = std::exchange(accounts_, {});
+  if (remembers_) {
+    const int elements = atom->nlocal + atom->nghost;
+    for (int i = atom->nlocal; i < elements; ++i) memory_of(i).clear();
+    find_longest();
+    for (round_ = 0; round_ * numbers_a_round < longest_; ++round_) send_to_ghosts(*comm, this, 0);
+    round_ = -1;
+    for (int i = 0; i < elements; ++i) all.insert(all.end(), memory_of(i).begin(), memory_of(i).end());
+  }
+  engine_->set_memory(std::move(all));
+}
+
+void FixMotion::copy_arrays(int from, int to, int) {
+  if (from != to) memory_of(to) = memory_of(from);
+}
+
+int FixMotion::pack_exchange(int i, double* buffer) {
+  const std::vector<double>& of = memory_of(i);
+  *buffer = static_cast<double>(of.size());
+  std::copy(of.begin(), of.end(), buffer + 1);
+  return static_cast<int>(of.size()) + 1;
+}
+
+int FixMotion::unpack_exchange(int i, double* buffer) {
+  memory_of(i).assign(buffer + 1, buffer + 1 + static_cast<std::ptrdiff_t>(*buffer));
+  return static_cast<int>(*buffer) + 1;
+}
+
+int FixMotion::pack_restart(int i, double* buffer) {
+  const int count = pack_exchange(i, buffer);
+  *buffer = count;  // LAMMPS skips as many
+  return count;
+}
+
+void FixMotion::unpack_restart(int i, int part) {
+  const double* from = atom->extra[i];
+  for (int k = 0; k < part; ++k) from += static_cast<std::ptrdiff_t>(*from);
+  memory_of(i).assign(from + 1, from + static_cast<std::ptrdiff_t>(*from));
+}
+
+std::vector<double> FixMotion::take_events() {
+  std::vector<double> numbers = std::exchange(untold_, {});
+  if (!engine_) return numbers;
+  const std::vector<double> now = numbers_of(engine_->take_events());
+  numbers.insert(numbers.end(), now.begin(), now.end());
+  return numbers;
+}
+
+// Elements may go elsewhere before the next run.
+void FixMotion::post_run() { keep_memory(); }
+
+// --- motion --------------------------------------------------------------------------------------------
 
 void FixMotion::move(double dt) {
   if (engine_) {
@@ -238,7 +369,7 @@ std::vector<double> FixMotion::energies() const {
     const std::vector<TermAccount> accounts = engine_->term_accounts();
     for (std::size_t k = 0; k < accounts.size(); ++k) {
       const TermAccount& a = accounts[k];
-      own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events});
+      own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events, a.begun});
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, own.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
@@ -260,15 +391,23 @@ struct Account {
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const Account all = {account(), carried_};
-  const std::vector<double> memory = engine_ ? engine_->memory() : std::vector<double>();
+  const Account all = {account_of_all(), carried_};
+  // LAMMPS writes memories with the elements. Between runs elements may have gone elsewhere already.
+  if (update->whichflag == 1) keep_memory();
+  // Events stay here until the next state is written.
+  std::vector<double> own = untold_ = take_events();
+  if (engine_)
+    for_records(engine_->memory(), [&](int element, const double* of, std::size_t count) {
+      if (element == the_account) own.insert(own.end(), of, of + count);
+    });
+  const std::vector<double> numbers = on_first_rank(lmp, own);
   if (comm->me > 0) return;
-  const int bytes = static_cast<int>(sizeof all + (1 + memory.size()) * sizeof(double));
-  const auto count = static_cast<double>(memory.size());
+  const int bytes = static_cast<int>(sizeof all + (1 + numbers.size()) * sizeof(double));
+  const auto count = static_cast<double>(numbers.size());
   std::fwrite(&bytes, sizeof bytes, 1, file);
   std::fwrite(&all, sizeof all, 1, file);
   std::fwrite(&count, sizeof count, 1, file);
-  std::fwrite(memory.data(), sizeof(double), memory.size(), file);
+  std::fwrite(numbers.data(), sizeof(double), numbers.size(), file);
 }
 
 void FixMotion::restart(char* bytes) {
@@ -278,9 +417,13 @@ void FixMotion::restart(char* bytes) {
   carried_ = account.carried;
   double count = 0;
   std::memcpy(&count, bytes + sizeof account, sizeof count);
-  first_memory_.resize(static_cast<std::size_t>(count));
-  if (!first_memory_.empty())
-    std::memcpy(first_memory_.data(), bytes + sizeof account + sizeof count, first_memory_.size() * sizeof(double));
+  std::vector<double> numbers(static_cast<std::size_t>(comm->me == 0 ? count : 0));
+  if (!numbers.empty())
+    std::memcpy(numbers.data(), bytes + sizeof account + sizeof count, numbers.size() * sizeof(double));
+  for_records(numbers, [&](int element, const double* of, std::size_t length) {
+    if (element == the_account) accounts_.insert(accounts_.end(), of, of + length);
+    if (element == an_event) untold_.insert(untold_.end(), of, of + length);
+  });
 }
 
 // --- dynamics -----------------------------------------------------------------------------------------
@@ -291,6 +434,7 @@ int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_
 // If the forces of the last step are known, from memory or from the data or restart file, they are used. A run in
 // parts then equals an uninterrupted run.
 void FixNve::setup(int) {
+  mark();
   if (carried_ != update->ntimestep) return;
   double** last = carried(lmp);
   for (int i = 0; i < atom->nlocal; ++i) {
@@ -316,8 +460,7 @@ double FixNve::push(double alpha, double TubeType::*inertia, double dt, double**
   return removed;
 }
 
-void FixNve::kick(double dt, double time) {
-  if (grip_) account_.work += 0.5 * dt * grip_->own_power();
+void FixNve::kick(double dt) {
   if (engine_ && engine_->leads()) {
     account_.dissipated += engine_->kick(dt);
   } else {
@@ -325,33 +468,76 @@ void FixNve::kick(double dt, double time) {
     account_.dissipated += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
     account_.dissipated += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
   }
-  if (!grip_) return;
-  account_.work += grip_->constrain(time, dt, dt);
-  account_.work += 0.5 * dt * grip_->own_power();
+  if (grip_) account_.work += grip_->constrain(time_, 0.5 * update->dt, dt);
 }
 
-void FixNve::initial_integrate(int) {
-  const double dt = update->dt, began = model_->time_at(update->ntimestep - 1);
-  kick(0.5 * dt, began);
-  if (model_->thermostat) {
-    move(0.5 * dt);
-    check();
-    exchange_heat(dt, began + 0.5 * dt);
-    move(0.5 * dt);
-  } else {
-    move(dt);
-  }
+void FixNve::add_work_of_loads(double dt) {
+  if (grip_) account_.work += dt * grip_->own_power();
+}
+
+void FixNve::drift(double dt) {
+  move(dt);
+  time_ += dt;
   check();
 }
 
-// As Simulation::exchange_heat(): the change of the kinetic energy is heat.
-void FixNve::exchange_heat(double dt, double time) {
-  const double before = own_kinetic_energy();
+void FixNve::bathe(double dt) {
   if (!engine_->leads()) engine_->take_own();
-  engine_->exchange_heat(*model_->thermostat, dt, update->ntimestep, time);
+  engine_->bathe(*model_->thermostat, dt, update->ntimestep, time_);
   if (!engine_->leads()) engine_->give_own();
-  if (grip_) grip_->constrain(time, 0.0, 0.0);
-  account_.heat += own_kinetic_energy() - before;
+  if (grip_) grip_->constrain(time_, 0.0, 0.0);
+}
+
+double FixNve::damped(double dt) const {
+  if (engine_) return engine_->lost() - dt * engine_->damping_power();
+  return damp_ ? -dt * damp_->own_power() : 0.0;
+}
+
+void FixNve::initial_integrate(int) {
+  time_ = model_->time_at(update->ntimestep - 1);
+  begin_step(*this, update->dt, model_->thermostat != nullptr);
+}
+
+namespace {
+
+// What the numbers of a row say of the account of energy.
+struct Reading {
+  EnergyMark mark;
+  double kinetic = 0, bonds = 0, contact = 0;
+};
+Reading reading_of(const std::vector<double>& row) {
+  Reading r;
+  r.bonds = row[0] + row[1] + row[2] + row[3];
+  r.contact = row[4];
+  r.kinetic = row[5];
+  r.mark = {r.bonds + r.contact + r.kinetic, {row[6], row[7], row[8]}};
+  for (std::size_t k = lammps_row_numbers - 1; k < row.size(); k += lammps_numbers_of_term) r.mark.energy += row[k];
+  return r;
+}
+
+}  // namespace
+
+void FixNve::mark() {
+  if (!engine_ || !model_->judges_account) return;
+  mark_ = reading_of(energies()).mark;
+  marked_at_ = update->ntimestep;
+}
+
+// As a run does at its marks. LAMMPS cannot go back and divide its steps.
+void FixNve::judge() {
+  if (!engine_ || !model_->judges_account) return;
+  const Reading now = reading_of(energies());
+  const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
+  if (!account_closes(mark_, now.mark, now.kinetic, now.bonds, mixed ? now.contact : 0,
+                      static_cast<std::size_t>(model_->topology.elements())))
+    refuse(lmp,
+           "step " + std::to_string(update->ntimestep) + ": the energy balance has not closed since step " +
+               std::to_string(marked_at_) + "; `ropewalk run` would go back and divide its steps of " +
+               std::to_string(update->dt / units::fs) + " fs, which LAMMPS cannot",
+           "take the states before with `ropewalk import` and go on with `ropewalk resume`, or set run.time_step_fs to "
+           "half of that and export again");
+  mark_ = now.mark;
+  marked_at_ = update->ntimestep;
 }
 
 void FixNve::check() const {
@@ -368,18 +554,16 @@ void FixNve::check() const {
 }
 
 void FixNve::final_integrate() {
-  if (engine_) {
-    account_.dissipated += engine_->lost() - update->dt * engine_->damping_power();
-  } else if (damp_) {
-    account_.dissipated -= update->dt * damp_->own_power();
-  }
-  kick(0.5 * update->dt, now());
+  time_ = now();
+  end_step(*this, update->dt);
+  if (update->ntimestep == marked_at_ + account_window) judge();
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();
   if (output->restart_flag && output->next_restart == update->ntimestep) carry();
 }
 
 void FixNve::post_run() {
+  FixMotion::post_run();
   if (engine_ && engine_->leads()) engine_->give_own();
   carry();
 }

@@ -1,10 +1,12 @@
 #include "lammps/fix_states.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -54,6 +56,9 @@ class File {
     }
   }
   void cut(std::int64_t bytes) const {
+    // A driver of FAT refuses to cut a file to the length that it has.
+    struct stat status;
+    if (::fstat(file_, &status) == 0 && status.st_size == bytes) return;
     if (::ftruncate(file_, bytes) != 0) throw file_error(path_, "cannot be written", errno);
   }
   void flush() const {
@@ -105,26 +110,20 @@ int FixStates::slice_of(LMP::bigint element) const {
   return static_cast<int>(((element + 1) * comm->nprocs - 1) / model_->topology.elements());
 }
 
-// Each record goes to its rank. They arrive in the order of the ranks that sent them, and of each in its order.
-std::vector<double> FixStates::exchange(const std::vector<int>& to, const std::vector<double>& records) const {
-  const auto ranks = static_cast<std::size_t>(comm->nprocs);
-  std::vector<int> send(ranks), receive(ranks), send_at(ranks), receive_at(ranks);
-  for (const int rank : to) ++send[static_cast<std::size_t>(rank)];
+// Each rank gets its list. Lists arrive behind one another in the order of the ranks that sent them.
+std::vector<double> FixStates::exchange(const std::vector<std::vector<double>>& to) const {
+  std::vector<int> send, receive(to.size()), send_at(to.size()), receive_at(to.size());
+  std::vector<double> all;
+  for (const std::vector<double>& list : to) {
+    send.push_back(static_cast<int>(list.size()));
+    all.insert(all.end(), list.begin(), list.end());
+  }
   MPI_Alltoall(send.data(), 1, MPI_INT, receive.data(), 1, MPI_INT, world);
   std::partial_sum(send.begin(), send.end() - 1, send_at.begin() + 1);
   std::partial_sum(receive.begin(), receive.end() - 1, receive_at.begin() + 1);
-  std::vector<double> sorted(records.size());
-  std::vector<int> next = send_at;
-  for (std::size_t k = 0; k < to.size(); ++k)
-    std::copy_n(&records[sent * k], sent,
-                &sorted[sent * static_cast<std::size_t>(next[static_cast<std::size_t>(to[k])]++)]);
-  std::vector<double> out(sent * static_cast<std::size_t>(receive.back() + receive_at.back()));
-  MPI_Datatype one;
-  MPI_Type_contiguous(sent, MPI_DOUBLE, &one);
-  MPI_Type_commit(&one);
-  MPI_Alltoallv(sorted.data(), send.data(), send_at.data(), one, out.data(), receive.data(), receive_at.data(), one,
-                world);
-  MPI_Type_free(&one);
+  std::vector<double> out(static_cast<std::size_t>(receive.back() + receive_at.back()));
+  MPI_Alltoallv(all.data(), send.data(), send_at.data(), MPI_DOUBLE, out.data(), receive.data(), receive_at.data(),
+                MPI_DOUBLE, world);
   return out;
 }
 
@@ -140,26 +139,23 @@ void FixStates::make_elements(const std::string& path) {
   orientations(lmp);
   std::string trouble;
   if (comm->me == 0)
-    trouble = trouble_of([&] {
-      began_ = last_state(path, model_->topology.elements());
-      memory_ = memory_in(path, began_);
-    });
+    trouble = trouble_of([&] { began_ = last_state(path, model_->topology.elements()); });
   refuse_together(lmp, trouble);
   MPI_Bcast(&began_, sizeof began_, MPI_BYTE, 0, world);
-  memory_.resize(static_cast<std::size_t>(began_.header.memory));
-  MPI_Bcast(memory_.data(), static_cast<int>(memory_.size()), MPI_DOUBLE, 0, world);
   has_begun_ = true;
   std::vector<StateRecord> slice;
   refuse_together(lmp, trouble_of([&] { slice = read_slice(path); }));
   widen_box(slice);
-  std::vector<double> records;
-  records.reserve(sent * slice.size());
+  const std::vector<int> owner = owners(slice);
+  std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
   auto element = static_cast<double>(slice_begin(comm->me));
-  for (const StateRecord& r : slice) {
-    records.push_back(element++);
-    records.insert(records.end(), r.begin(), r.end());
+  for (std::size_t k = 0; k < slice.size(); ++k) {
+    std::vector<double>& list = to[static_cast<std::size_t>(owner[k])];
+    list.push_back(element++);
+    list.insert(list.end(), slice[k].begin(), slice[k].end());
   }
-  create(exchange(owners(slice), records));
+  create(exchange(to));
+  share_memory(path, owner);
   if (update->ntimestep != began_.header.step) update->reset_timestep(LMP::bigint{began_.header.step});
 }
 
@@ -176,6 +172,69 @@ std::vector<StateRecord> FixStates::read_slice(const std::string& path) const {
                        "was it written by the in.rope of this export?");
   }
   return slice;
+}
+
+// Records lie behind one another without an index: a rank hears from the one before it where its first one begins.
+std::vector<double> FixStates::read_share_of_memory(const std::string& path) const {
+  const std::int64_t all = began_.header.memory, end = all * (comm->me + 1) / comm->nprocs;
+  std::int64_t first = 0;
+  if (comm->me > 0) MPI_Recv(&first, 1, MPI_INT64_T, comm->me - 1, 0, world, MPI_STATUS_IGNORE);
+  std::vector<double> numbers;
+  std::int64_t next = std::max(first, end);
+  const std::string trouble = trouble_of([&] {
+    const auto fail = [&] {
+      throw InputError({path, 0, ""}, "the memory of a force term is damaged",
+                       "was it written by the in.rope of this export?");
+    };
+    const double elements = model_->topology.elements();
+    // The last record of the share may go on behind it.
+    for (std::int64_t until = std::min(all, end + 3); first < end;) {
+      const std::size_t there = numbers.size();
+      numbers.resize(static_cast<std::size_t>(until - first));
+      const File file(path, O_RDONLY);
+      file.read(&numbers[there], (numbers.size() - there) * sizeof(double),
+                began_.record(began_.header.elements) +
+                    (first + static_cast<std::int64_t>(there)) * std::int64_t{sizeof(double)});
+      std::size_t at = 0;
+      while (first + static_cast<std::int64_t>(at) < end) {
+        if (at + 3 > numbers.size() || !(numbers[at + 1] >= an_event && numbers[at + 1] < elements) ||
+            !(numbers[at + 2] >= 0 && numbers[at + 2] <= static_cast<double>(all)))
+          fail();
+        at += 3 + static_cast<std::size_t>(numbers[at + 2]);
+      }
+      next = first + static_cast<std::int64_t>(at);
+      if (next > all) fail();
+      if (at <= numbers.size()) {
+        numbers.resize(at);
+        break;
+      }
+      until = next;
+    }
+    for (const double number : numbers)
+      if (!std::isfinite(number)) fail();
+  });
+  if (comm->me + 1 < comm->nprocs) MPI_Send(&next, 1, MPI_INT64_T, comm->me + 1, 0, world);
+  refuse_together(lmp, trouble);
+  return numbers;
+}
+
+// Records go to the slices of their elements, and from there to the owners. Events are in the file and stay there.
+void FixStates::share_memory(const std::string& path, const std::vector<int>& owners) {
+  if (began_.header.memory == 0) return;
+  const auto sorted = [&](const std::vector<double>& numbers, const auto& rank_of) {
+    std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
+    for_records(numbers, [&](int element, const double* of, std::size_t count) {
+      if (element == an_event) return;
+      std::vector<double>& list = to[static_cast<std::size_t>(element == the_account ? 0 : rank_of(element))];
+      list.insert(list.end(), of, of + count);
+    });
+    return exchange(to);
+  };
+  const std::vector<double> of_slice =
+      sorted(read_share_of_memory(path), [&](int element) { return slice_of(element); });
+  memory_ = sorted(of_slice, [&](int element) {
+    return owners[static_cast<std::size_t>(element - slice_begin(comm->me))];
+  });
 }
 
 // So that all elements are in it. The lower bound of its size stays, as LAMMPS would let it grow by itself.
@@ -285,7 +344,7 @@ void FixStates::post_run() {
 void FixStates::write() {
   RankEngine* engine = engine_of(lmp);
   if (engine && engine->leads()) engine->give_own();
-  const auto* motion = find_fix<FixMotion>(lmp);
+  auto* motion = find_fix<FixMotion>(lmp);
   StateInFile state;
   state.at = end_;
   state.header.step = update->ntimestep;
@@ -293,19 +352,19 @@ void FixStates::write() {
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {
-    const EnergySupply account = motion->account();
+    const EnergySupply account = motion->account_of_all();
     state.header.work = account.work;
     state.header.dissipated = account.dissipated;
     state.header.heat = account.heat;
   }
   const auto n = static_cast<std::size_t>(atom->nlocal);
-  std::vector<int> to(n);
-  std::vector<double> records(sent * n);
+  std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
   double** q = orientations(lmp);
   for (std::size_t i = 0; i < n; ++i) {
     const int element = element_of(*atom, static_cast<int>(i));
-    to[i] = slice_of(element);
-    double* r = &records[sent * i];
+    std::vector<double>& list = to[static_cast<std::size_t>(slice_of(element))];
+    list.resize(list.size() + sent);
+    double* r = &*list.end() - sent;
     *r = element;
     std::copy_n(atom->x[i], 3, r + 1);
     std::copy_n(q[i], 4, r + 4);
@@ -314,33 +373,38 @@ void FixStates::write() {
     std::copy_n(atom->f[i], 3, r + 14);
     std::copy_n(atom->torque[i], 3, r + 17);
   }
-  const std::vector<double> memory = engine ? engine->memory() : std::vector<double>();
-  state.header.memory = static_cast<std::int64_t>(memory.size());
-  const std::vector<double> mine = exchange(to, records);
-  refuse_together(lmp, trouble_of([&] { write_slice(state, mine); }));
+  std::vector<double> memory = engine ? engine->memory() : std::vector<double>();
+  if (motion) {
+    const std::vector<double> events = motion->take_events();
+    memory.insert(memory.end(), events.begin(), events.end());
+  }
+  const auto numbers_here = static_cast<std::int64_t>(memory.size());
+  std::int64_t up_to_here = 0;
+  MPI_Scan(&numbers_here, &up_to_here, 1, MPI_INT64_T, MPI_SUM, world);
+  MPI_Allreduce(&numbers_here, &state.header.memory, 1, MPI_INT64_T, MPI_SUM, world);
+  const std::vector<double> mine = exchange(to);
+  refuse_together(lmp, trouble_of([&] { write_slice(state, mine, memory, up_to_here - numbers_here); }));
   // The header says that the rest is there.
   std::string trouble;
   if (comm->me == 0)
-    trouble = trouble_of([&] {
-      const File file(path_, O_RDWR);
-      file.write(memory.data(), memory.size() * sizeof(double), state.record(state.header.elements));
-      file.flush();
-      file.write(&state.header, sizeof state.header, state.at);
-    });
+    trouble = trouble_of([&] { File(path_, O_RDWR).write(&state.header, sizeof state.header, state.at); });
   refuse_together(lmp, trouble);
   end_ = state.end();
   written_ = update->ntimestep;
 }
 
-void FixStates::write_slice(const StateInFile& state, const std::vector<double>& records) const {
+void FixStates::write_slice(const StateInFile& state, const std::vector<double>& records,
+                            const std::vector<double>& memory, std::int64_t memory_before) const {
   const LMP::bigint first = slice_begin(comm->me);
   std::vector<StateRecord> slice(static_cast<std::size_t>(slice_begin(comm->me + 1) - first));
   for (std::size_t k = 0; k < records.size(); k += sent)
     std::copy_n(&records[k + 1], numbers,
                 slice[static_cast<std::size_t>(records[k]) - static_cast<std::size_t>(first)].data());
-  if (slice.empty()) return;
+  if (slice.empty() && memory.empty()) return;
   const File file(path_, O_RDWR);
   file.write(slice.data(), slice.size() * sizeof(StateRecord), state.record(first));
+  file.write(memory.data(), memory.size() * sizeof(double),
+             state.record(state.header.elements) + memory_before * std::int64_t{sizeof(double)});
   file.flush();
 }
 

@@ -21,21 +21,25 @@ class FixStates : public LMP::Fix {
 
   // The header of the state that the run began with; null if this fix has not made the elements.
   const StateHeader* began() const { return has_begun_ ? &began_.header : nullptr; }
-  // The memories of the force terms there.
+  // The memories of force terms there: those of the elements that this rank has made, on the first rank the accounts
+  // too.
   const std::vector<double>& memory() const { return memory_; }
 
  private:
   LMP::bigint slice_begin(int rank) const;
   int slice_of(LMP::bigint element) const;
-  std::vector<double> exchange(const std::vector<int>& to, const std::vector<double>& records) const;
+  std::vector<double> exchange(const std::vector<std::vector<double>>& to) const;
   void make_elements(const std::string& path);
   std::vector<StateRecord> read_slice(const std::string& path) const;
+  std::vector<double> read_share_of_memory(const std::string& path) const;
+  void share_memory(const std::string& path, const std::vector<int>& owners);
   void widen_box(const std::vector<StateRecord>& records);
   std::vector<int> owners(const std::vector<StateRecord>& records) const;
   void create(const std::vector<double>& records);
   void begin_file(const std::string& start);
   void write();
-  void write_slice(const StateInFile& state, const std::vector<double>& records) const;
+  void write_slice(const StateInFile& state, const std::vector<double>& records, const std::vector<double>& memory,
+                   std::int64_t memory_before) const;
 
   std::shared_ptr<const LammpsModel> model_;
   std::string path_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "model/error.hpp"
+#include "scene/interactions/failure.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/dynamics/stepping.hpp"
@@ -26,12 +27,15 @@ LammpsModel load_lammps_model(const std::string& directory) {
   m.topology.groups.ends_meet = ends_meet(scene, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
+  scene.memory.terms.push_back({"links", {}});  // none is placed here: all are in the state
   add_terms(scene, m.topology, State(static_cast<std::size_t>(m.topology.elements())), m.interaction);
+  if (m.start.tubes_came_broken) add_term(broken_tubes_term(m.topology), m.interaction);
   m.loads = loads_of(scene, m.topology, m.interaction);
   Stepping stepping;
   for (const auto& drive : scene.drives) drive->set_stepping(m.start.lineage, stepping);
   m.thermostat = stepping.thermostat;
   m.law = scene.contact.law;
+  m.judges_account = !scene.contact.legacy_torque;
   m.relax = scene.run.mode == RunOptions::Mode::relax;
   m.force_tolerance = scene.run.goal.force;
   return m;

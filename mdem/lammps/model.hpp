@@ -24,6 +24,7 @@ struct LammpsModel {
   std::string law = "none";
   bool relax = false;
   double force_tolerance = 0;  // eV/nm
+  bool judges_account = true;  // ends a motion whose account does not close
 
   bool damped() const {
     return interaction.damped_contact() || interaction.damping.bond.rate > 0 || interaction.damping.local > 0;

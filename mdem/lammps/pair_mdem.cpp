@@ -6,6 +6,7 @@
 #include "neighbor.h"
 #include "sim/contact/contact_law.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/state/part_of_scene.hpp"
 #include "utils.h"
 
 namespace ropewalk::lammps {
@@ -76,7 +77,10 @@ void PairMdem::init_style() {
                                    : std::string("Forces by the plain forms, pair by pair\n"));
 }
 
-double PairMdem::init_one(int, int) { return model_->interaction.cutoff(); }
+double PairMdem::init_one(int, int) {
+  return model_->interaction.has_contact() ? model_->interaction.cutoff()
+                                           : copy_reach(model_->topology, model_->interaction, 0);
+}
 
 void PairMdem::contact(int i, int j) {
   const Vector3 separation = vector(atom->x[j]) - vector(atom->x[i]);
@@ -123,6 +127,7 @@ void PairMdem::compute_by_engine(int eflag) {
 
 void PairMdem::compute_plain() {
   energy_ = 0;
+  if (!model_->interaction.has_contact()) return;
   double** q = orientations(lmp);
   const int all = atom->nlocal + atom->nghost;
   axis_.resize(static_cast<std::size_t>(all));

@@ -1,5 +1,5 @@
-// pair_style mdem/paper DIR [plain], mdem/line DIR [plain]: the contact law of the scene in DIR. The simulator's
-// engine computes all forces of the model at once, those of bonds and damping as well. With `plain`, pair by pair,
+// pair_style mdem/paper DIR [plain], mdem/line DIR [plain], mdem/none DIR [plain]: the contact law of the scene in
+// DIR; none has tubes that do not touch. The simulator's engine computes all forces of the model at once, those of bonds and damping as well. With `plain`, pair by pair,
 // the forms of mdem/model do: slowly, for comparison, and for energies and virials of atoms.
 #pragma once
 

@@ -37,7 +37,7 @@ void* make_fix(void* lmp, int count, char** words) {
   return ours::fix_entries[k].make(static_cast<LAMMPS_NS::LAMMPS*>(lmp), count, words);
 }
 
-constexpr lammpsplugin_factory1* pair_makers[] = {make_pair<0>, make_pair<1>};
+constexpr lammpsplugin_factory1* pair_makers[] = {make_pair<0>, make_pair<1>, make_pair<2>};
 constexpr lammpsplugin_factory2* fix_makers[] = {make_fix<0>, make_fix<1>, make_fix<2>, make_fix<3>, make_fix<4>};
 
 }  // namespace
@@ -50,7 +50,7 @@ extern "C" void lammpsplugin_init(void* lmp, void* handle, void* regfunc) {
   plugin.author = "Ropewalk";
   plugin.handle = handle;
   plugin.style = "pair";
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 3; ++k) {
     plugin.name = ours::pair_entries[k].name;
     plugin.creator.v1 = pair_makers[k];
     add(&plugin, lmp);

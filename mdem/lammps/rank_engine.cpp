@@ -1,12 +1,15 @@
 #include "lammps/rank_engine.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "comm.h"
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
+#include "sim/dynamics/simulation.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "sim/threads/for_each.hpp"
@@ -64,7 +67,7 @@ RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> mode
     : lmp_(lmp),
       model_(std::move(model)),
       messages_(lmp->world),
-      list_(model_->interaction, model_->interaction.law->default_skin()) {
+      list_(model_->interaction, default_skin(model_->interaction)) {
   if (lmp->comm->nprocs > 1) {
     ranks_ = std::make_unique<AllRanks>(lmp->world);
     engine_.share_with(&messages_);
@@ -176,12 +179,8 @@ void RankEngine::complete_forces() {
 
 double RankEngine::kick(double dt) {
   complete_forces();
-  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
-  const ForceRows total = rows_of(forces_);
-  removed_.resize(moved_.size());
-  for_each(moved_.size(), state_.size() > parallel_from,
-           [&](std::size_t k) { removed_[k] = ropewalk::kick(topology_, terms, total, dt, moved_[k], state_); });
-  return terms ? std::accumulate(removed_.begin(), removed_.end(), 0.0) : 0;
+  return kick_all(topology_, engine_.terms(), rows_of(forces_), dt, static_cast<int>(moved_.size()),
+                  [this](int k) { return moved_[static_cast<std::size_t>(k)]; }, state_);
 }
 
 void RankEngine::move(double dt) {
@@ -202,34 +201,25 @@ void RankEngine::move(double dt) {
 }
 
 // Copies change as well; their owners send them before they are read.
-void RankEngine::exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time) {
+void RankEngine::bathe(const Thermostat& bath, double dt, std::int64_t step, double time) {
   state_.step = step;
   state_.time = time;
   std::vector<double> none;
   bath.apply(topology_, dt, state_, none);
 }
 
-double RankEngine::kinetic_energy() const {
-  double sum = 0;
-  for (const Segment& of : moved_)
-    for (int k = of.begin; k < of.end; ++k) {
-      const TubeType& type = topology_.type_of(of.tube);
-      const auto i = static_cast<std::size_t>(k);
-      sum += type.mass * state_.velocity[i].squaredNorm() + type.inertia * state_.angular_velocity[i].squaredNorm();
-    }
-  return 0.5 * sum;
-}
-
 bool RankEngine::stale() {
   ++steps_;
   Change all;  // summed in the order of the elements, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
+  if (engine_.terms().have_news()) all.moved = std::numeric_limits<double>::infinity();
   return list_.stale(all);
 }
 
 // The mean of the best skins of all ranks, weighted by their elements.
 double RankEngine::choose_skin() {
-  if (!engine_.contact() || steps_ == 0) return list_.skin;
+  // News of a force term make a list old before its time.
+  if (!engine_.contact() || steps_ == 0 || !std::isfinite(list_.displacement())) return list_.skin;
   double best = engine_.contact()->best_skin(topology_, list_.skin, steps_);
   if (ranks_) {
     const double own = lmp_->atom->nlocal;
@@ -240,13 +230,25 @@ double RankEngine::choose_skin() {
   return list_.skin = best;
 }
 
-std::vector<double> RankEngine::memory() const {
-  const std::vector<double> own = engine_.terms().memory();
-  return ranks_ && !engine_.terms().empty() ? messages_.join(own) : own;
+// A force term that cannot go on says why.
+template <class F>
+void RankEngine::or_refuse(const F& f) {
+  try {
+    f();
+  } catch (const std::runtime_error& e) {
+    refuse_one(lmp_, "step " + std::to_string(lmp_->update->ntimestep) + ": " + e.what(),
+               "go on from the last state with `ropewalk import` and `ropewalk resume`");
+  }
+}
+
+std::vector<TermEvent> RankEngine::take_events() {
+  std::vector<TermEvent> events = engine_.terms().events();
+  engine_.forget_events();
+  return events;
 }
 
 void RankEngine::build() {
-  const std::vector<double> memories = first_memory_ ? *std::exchange(first_memory_, std::nullopt) : memory();
+  const bool goes_on = list_.builds() > 0;
   const LMP::Atom& atom = *lmp_->atom;
   const int all = atom.nlocal + atom.nghost;
   std::vector<std::pair<int, int>> order;  // element of the scene, atom
@@ -294,7 +296,9 @@ void RankEngine::build() {
   for (const Stretch& s : own_)
     for (int k = 0; k < s.count; ++k) element_[static_cast<std::size_t>(s.atom + k)] = s.element + k;
   list_.build(topology_, state_);
-  engine_.set_memory(model_->interaction, memories, model_->topology.elements(), lmp_->comm->me == 0);
+  or_refuse([&] {
+    engine_.set_memory(model_->interaction, std::exchange(next_memory_, {}), model_->topology.elements(), goes_on);
+  });
   steps_ = 0;
 }
 
@@ -310,7 +314,7 @@ void RankEngine::find_moved() {
 
 void RankEngine::evaluate(const State& state, const ForceOptions& options, Forces& out) {
   out.resize(state.size());
-  engine_.compute(topology_, model_->interaction, list_, state, out, options);
+  or_refuse([&] { engine_.compute(topology_, model_->interaction, list_, state, out, options); });
 }
 
 void RankEngine::compute(bool energies) {
@@ -320,6 +324,8 @@ void RankEngine::compute(bool energies) {
   // At the start of a run no time has passed; in a relaxation none does.
   std::optional<double> passed;
   if (!lmp_->update->setupflag) passed = model_->relax ? 0.0 : lmp_->update->dt;
+  state_.step = lmp_->update->ntimestep;
+  state_.time = model_->time_at(lmp_->update->ntimestep);
   evaluate(state_, {Parts::all, energies, passed}, forces_);
   contact_energy_known_ = energies;
   // At the start of a run LAMMPS writes forces before the first step.

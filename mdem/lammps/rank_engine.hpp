@@ -8,8 +8,8 @@
 // elements in every step would cost as much as the bonds.
 #pragma once
 
+#include <array>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -47,9 +47,9 @@ class RankEngine {
   double kick(double dt);
   void move(double dt);
   // The bath acts on the velocities of own elements during dt (ps), in the middle of this step.
-  void exchange_heat(const Thermostat& bath, double dt, std::int64_t step, double time);
+  void bathe(const Thermostat& bath, double dt, std::int64_t step, double time);
   const Fastest& fastest() const { return fastest_; }  // in the last move
-  double kinetic_energy() const;
+  double kinetic_energy() const { return ropewalk::kinetic_energy(topology_, state_); }
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
   void take_own();
   // The same to them, with forces and torques where the engine leads: of all own elements, of the shared ones
@@ -74,9 +74,13 @@ class RankEngine {
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
 
-  // The memories of all force terms, of all ranks; the first build begins with those that are set. All ranks.
-  std::vector<double> memory() const;
-  void set_memory(std::vector<double> memory) { first_memory_ = std::move(memory); }
+  // Memories of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the
+  // records of its own elements.
+  std::vector<double> memory() const { return engine_.terms().memory(); }
+  // For the next build: the records of all elements here, copies among them. At the first one the accounts as well.
+  void set_memory(std::vector<double> memory) { next_memory_ = std::move(memory); }
+  // What has happened on this rank since the last call.
+  std::vector<TermEvent> take_events();
 
   // Energies of this rank's pairs and bonds in the last evaluation.
   BondEnergy bond_energy() const;
@@ -104,20 +108,21 @@ class RankEngine {
   void complete_forces();  // adds the forces in LAMMPS's arrays to those of own elements
   const std::vector<Stretch>& shared();
   void evaluate(const State& state, const ForceOptions& options, Forces& out);
+  template <class F>
+  void or_refuse(const F& f);
 
   LMP::LAMMPS* lmp_;
   double** quaternions_ = nullptr;  // valid during a call only
   std::shared_ptr<const LammpsModel> model_;
   std::unique_ptr<AllRanks> ranks_;  // none where there is one rank
   RankMessages messages_;
-  std::optional<std::vector<double>> first_memory_;
+  std::vector<double> next_memory_;
   Topology topology_;
   State state_;
   std::vector<Stretch> own_, ghosts_;  // own ones short enough for the first cache
   // Own elements of a tube, likewise, whatever their places in LAMMPS: these change as elements come and go, and
   // bits of the motion must not depend on that.
   std::vector<Segment> moved_;
-  std::vector<double> removed_;  // energy that the last kick has removed from each of them, eV
   std::vector<int> element_;     // element of each own atom
   std::vector<char> is_shared_;  // likewise
   std::vector<Stretch> shared_;  // of those that are

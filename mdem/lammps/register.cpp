@@ -13,6 +13,7 @@ namespace ropewalk::lammps {
 namespace {
 
 LMP::Pair* make_paper(LMP::LAMMPS* lmp) { return new PairMdem(lmp, "paper"); }
+LMP::Pair* make_none(LMP::LAMMPS* lmp) { return new PairMdem(lmp, "none"); }
 LMP::Pair* make_line(LMP::LAMMPS* lmp) { return new PairMdem(lmp, "line"); }
 LMP::Bond* make_bond(LMP::LAMMPS* lmp) { return new BondVBond(lmp); }
 template <class F>
@@ -22,7 +23,7 @@ LMP::Fix* make_fix(LMP::LAMMPS* lmp, int count, char** words) {
 
 }  // namespace
 
-const PairEntry pair_entries[2] = {{"mdem/paper", make_paper}, {"mdem/line", make_line}};
+const PairEntry pair_entries[3] = {{"mdem/paper", make_paper}, {"mdem/line", make_line}, {"mdem/none", make_none}};
 const BondEntry bond_entries[1] = {{"mdem/vbond", make_bond}};
 const FixEntry fix_entries[5] = {{"mdem/nve", make_fix<FixNve>},
                                  {"mdem/relax", make_fix<FixRelax>},

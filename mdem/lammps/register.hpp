@@ -21,7 +21,7 @@ struct FixEntry {
   LAMMPS_NS::Fix* (*make)(LAMMPS_NS::LAMMPS*, int, char**);
 };
 
-extern const PairEntry pair_entries[2];
+extern const PairEntry pair_entries[3];
 extern const BondEntry bond_entries[1];
 extern const FixEntry fix_entries[5];
 

@@ -165,29 +165,30 @@ double** property(LMP::LAMMPS* lmp, const char* name, int wanted) {
 double** orientations(LMP::LAMMPS* lmp) { return property(lmp, "quat", 4); }
 double** carried(LMP::LAMMPS* lmp) { return property(lmp, "carried", 6); }
 
-namespace {
-
-template <class T>
-std::vector<T> from_all(const std::vector<T>& own, MPI_Datatype type, MPI_Comm world) {
-  int ranks = 1;
-  MPI_Comm_size(world, &ranks);
-  const int count = static_cast<int>(own.size());
-  std::vector<int> counts(static_cast<std::size_t>(ranks)), at(counts.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::partial_sum(counts.begin(), counts.end() - 1, at.begin() + 1);
-  std::vector<T> all(static_cast<std::size_t>(counts.back() + at.back()));
-  MPI_Allgatherv(own.data(), count, type, all.data(), counts.data(), at.data(), type, world);
-  return all;
-}
-
-}  // namespace
-
 void RankMessages::sum(double* values, std::size_t count) const {
   MPI_Allreduce(MPI_IN_PLACE, values, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, world_);
 }
-std::vector<int> RankMessages::join(const std::vector<int>& own) const { return from_all(own, MPI_INT, world_); }
-std::vector<double> RankMessages::join(const std::vector<double>& own) const {
-  return from_all(own, MPI_DOUBLE, world_);
+std::vector<int> RankMessages::join(const std::vector<int>& own) const {
+  int ranks = 1;
+  MPI_Comm_size(world_, &ranks);
+  const int count = static_cast<int>(own.size());
+  std::vector<int> counts(static_cast<std::size_t>(ranks)), at(counts.size());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world_);
+  std::partial_sum(counts.begin(), counts.end() - 1, at.begin() + 1);
+  std::vector<int> all(static_cast<std::size_t>(counts.back() + at.back()));
+  MPI_Allgatherv(own.data(), count, MPI_INT, all.data(), counts.data(), at.data(), MPI_INT, world_);
+  return all;
+}
+
+std::vector<double> on_first_rank(LMP::LAMMPS* lmp, const std::vector<double>& own) {
+  const auto ranks = static_cast<std::size_t>(lmp->comm->me == 0 ? lmp->comm->nprocs : 0);
+  const int count = static_cast<int>(own.size());
+  std::vector<int> counts(ranks), at(ranks);
+  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, lmp->world);
+  if (ranks > 0) std::partial_sum(counts.begin(), counts.end() - 1, at.begin() + 1);
+  std::vector<double> all(ranks > 0 ? static_cast<std::size_t>(counts.back() + at.back()) : 0);
+  MPI_Gatherv(own.data(), count, MPI_DOUBLE, all.data(), counts.data(), at.data(), MPI_DOUBLE, 0, lmp->world);
+  return all;
 }
 
 double sum_over_ranks(LMP::LAMMPS* lmp, double value) {

@@ -74,6 +74,8 @@ inline const TubeType& type_of(const LammpsModel& model, const LMP::Atom& atom, 
 }
 
 double sum_over_ranks(LMP::LAMMPS* lmp, double value);
+// The lists of all ranks behind one another, on the first rank; none on the others. All ranks.
+std::vector<double> on_first_rank(LMP::LAMMPS* lmp, const std::vector<double>& own);
 
 // The messages of the ranks that loads and force terms need.
 class RankMessages : public Processes {
@@ -81,7 +83,6 @@ class RankMessages : public Processes {
   explicit RankMessages(MPI_Comm world) : world_(world) {}
   void sum(double* values, std::size_t count) const override;
   std::vector<int> join(const std::vector<int>& own) const override;
-  std::vector<double> join(const std::vector<double>& own) const override;
 
  private:
   MPI_Comm world_;

@@ -72,7 +72,7 @@ struct BondEnergy {
 
 struct BondForce {
   BondEnergy energy;
-  Vector3 force_j;             // on element j; element i feels the opposite
+  Vector3 force_j;             // force on element j; element i feels the opposite
   Vector3 torque_i, torque_j;  // about the element centres
 };
 

@@ -76,7 +76,7 @@ FUNCTION Turn turned(Vec w, double dt, Turn q) {
 
 // --- anharmonic energies per length (anharmonic.hpp) ---------------------------------------------------
 
-#define PULL_STEPS 8  // of the law of stretch beyond the window
+#define PULL_STEPS 8  // steps of the law of stretch beyond the window
 
 struct Anharmonic {
   int used DEFAULT_0;                                                               // 0: the bond is harmonic
@@ -204,7 +204,7 @@ typedef struct {
 
 typedef struct {
   BondEnergy energy;
-  Vec force_j;             // on element j; element i feels the opposite
+  Vec force_j;             // force on element j; element i feels the opposite
   Vec torque_i, torque_j;  // about the element centres
 } BondAction;
 

@@ -3,6 +3,9 @@
 //
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
+//   [filament]  in place of [tube] and meta.chirality, for anything slender without a lattice of carbon:
+//               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u: atomic
+//               mass constant), element_length (nm)
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
 //   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
 //   and
@@ -19,7 +22,8 @@
 //               surface_density (1/nm^2) that it was integrated from; K (eV/nm^2), s (nm), c (nm), p, q, core_gap,
 //               switch_gap, cutoff_gap (nm) of contact/line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
 //               cross90_energy (eV) of that law; optional: registry, the standard deviation of pair_energy over the
-//               registries of two real tubes, over its mean
+//               registries of two real tubes, over its mean. A filament has no atoms to integrate over: epsilon,
+//               sigma, lj_cutoff, surface_density, registry and [contact.line.universal] are not in its file.
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad)
@@ -61,6 +65,7 @@ struct Quantity {
   std::string origin;
   std::string doi;
   std::string note;
+  bool of_carbon = true;  // interatomic potentials of carbon differ about it; false: of a filament
 };
 
 // Correlations of the standard errors of some quantities, by the fit that they come from.
@@ -91,7 +96,7 @@ struct Validity {
 // The `line` law of a set, with the input of its integrals.
 struct LineParameters {
   double surface_density = 0;  // atoms per nm^2
-  LineDensity density;         // of two tubes of this kind
+  LineDensity density;         // line density of two tubes of this kind
   double pair_spacing = 0;     // nm
   double pair_energy = 0;      // eV/nm
   double cross90_energy = 0;   // eV
@@ -103,9 +108,11 @@ struct ParameterSet {
   std::string name;
   std::string reference;
   std::string doi;
-  Chirality chirality;
-  double radius = 0;            // nm
-  double atoms_per_length = 0;  // 1/nm
+  bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
+  Chirality chirality;            // (0,0), which is no tube, for a filament
+  double radius = 0;              // nm: of the wall of a tube, which is its contact radius; contact_radius of a filament
+  double atoms_per_length = 0;    // 1/nm; 0 for a filament
+  double mass_per_length = 0;     // eV ps^2/nm^3, of a filament
   double element_length = 0;    // nm
   BondStiffness bond;           // eV/nm, eV nm; harmonic
   std::optional<Anharmonic> anharmonic;
@@ -124,7 +131,9 @@ struct ParameterSet {
   double end_of_stretch() const {
     return pull ? pull->end : anharmonic ? anharmonic->max_strain : validity.stretch;
   }
-  double element_mass(double length) const { return atoms_per_length * length * units::carbon_mass; }
+  double element_mass(double length) const {
+    return filament ? mass_per_length * length : atoms_per_length * length * units::carbon_mass;
+  }
   // The anharmonic bond where the set has one, of tubes of this length (nm; 0: endless), which collapse at
   // validity.collapse_at.
   BondStiffness anharmonic_bond(double tube_length) const {
@@ -135,7 +144,8 @@ struct ParameterSet {
     return k;
   }
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,
-  // m (r^2/2 + length^2/12), is 0.83 of it at length = 2 r. Published choice; no gyroscopic term.
+  // m (r^2/2 + length^2/12), is 0.83 of it at length = 2 r. Published choice; no gyroscopic term. About the axis of
+  // a solid filament it is twice the true one: its torsional waves are slower by a factor 1.4, its statics the same.
   double element_inertia(double length) const { return element_mass(length) * radius * radius; }
 };
 

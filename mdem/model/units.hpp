@@ -14,6 +14,7 @@ inline constexpr double carbon_atomic_weight = 12.011;        // IUPAC standard 
 // The mass unit eV ps^2/nm^2 in kg: 1 J = 1 kg m^2/s^2 and 1 nm/ps = 1000 m/s.
 inline constexpr double mass_unit_kg = electron_charge_C * 1e-6;
 inline constexpr double carbon_mass = carbon_atomic_weight * atomic_mass_kg / mass_unit_kg;  // eV ps^2/nm^2
+inline constexpr double atomic_mass = atomic_mass_kg / mass_unit_kg;                         // u, eV ps^2/nm^2
 
 inline constexpr double boltzmann = boltzmann_J_per_K / electron_charge_C;  // eV/K
 

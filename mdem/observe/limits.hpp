@@ -53,7 +53,7 @@ struct Limits {
   double twist = 19.9 * units::degree;  // rad per bond
   double kink_curvature = 0;            // 1/nm
   double wall_twist = 0;
-  double strain = 0;       // of a pulled bond
+  double strain = 0;       // strain of a pulled bond
   double compression = 0;  // strain of a pressed bond; 0: as of a pulled one
   double overlap = 0;      // nm
   double speed = 0;        // nm/ps
@@ -66,15 +66,15 @@ struct Limits {
 Limits default_limits(const TubeType& type, const Validity& validity);
 
 struct LimitKind {
-  const char* key;  // in the scene's [limits]
+  const char* key;  // key in the scene's [limits]
   const char* unit;
-  double unit_size;  // in internal units
+  double unit_size;  // unit in internal units
   double Limits::*limit;
   const char* what;         // "the bond to the next element is bent by"
   const char* consequence;  // what is wrong there
   const char* remedy;       // for one who meets it; with `cured_by_finer`, --on-limit refine is another one
   bool cured_by_finer;      // would shorter elements help
-  bool whole = false;       // of the run as a whole, at no element
+  bool whole = false;       // a limit of the run as a whole, at no element
 };
 inline constexpr std::size_t limit_count = 10;
 const std::array<LimitKind, limit_count>& limit_kinds();
@@ -84,18 +84,23 @@ struct Peak {
   double value = 0;
   double limit = 0;
   int element = -1;  // for a bond its first element; -1: no value
+  bool pressed = false;  // a strain below zero
 
   double ratio() const { return limit > 0 ? value / limit : 0; }
   bool passed() const { return ratio() > 1; }
+  // Each against its own limit, where both have one.
+  bool is_beyond(const Peak& other) const {
+    return limit > 0 && other.limit > 0 ? ratio() > other.ratio() : value > other.value;
+  }
 };
-using Peaks = std::array<Peak, limit_count>;  // in the order of limit_kinds()
+using Peaks = std::array<Peak, limit_count>;  // one peak a limit, in the order of limit_kinds()
 
 // What loads and constraints do to an element.
 enum class Held : char { free, loaded, clamped };
 
 // The limits of one scene.
 struct Watched {
-  std::vector<Limits> limits;  // by tube type
+  std::vector<Limits> limits;  // limits by tube type
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
   // The pressure on every tube of a state, eV/nm^3; none: not watched.
   std::function<std::vector<double>(const State&)> pressures = {};

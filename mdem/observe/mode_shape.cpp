@@ -15,7 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::Vector3cd;
 
-constexpr double least_sideways = 0.01;  // of the kinetic energy, for a form
+constexpr double least_sideways = 0.01;  // part of the kinetic energy that makes a form
 
 // The components of the deflections along their main direction, in which the sum of their squares is largest.
 std::vector<double> in_main_plane(const std::vector<Vector3>& deflections) {

@@ -11,7 +11,7 @@ struct ModeShares {
   double sideways = 0;  // across the centre line
   double stretch = 0;   // along it
   double turn = 0;      // about it
-  double slip = 0;      // of tubes along themselves, within a cross-section
+  double slip = 0;      // sliding of tubes along themselves, within a cross-section
   double section = 0;   // what else changes the cross-section
   double spin = 0;      // turns of elements about their own axes
   double tilt = 0;      // and about others

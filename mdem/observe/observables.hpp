@@ -33,7 +33,7 @@ struct EnergyAccount {
     Energies potential, first;
   };
   std::optional<Period> period;              // the same of one period of a slice, which RopeSize::mass counts
-  std::map<std::string, TermReading> terms;  // of the force terms by their names
+  std::map<std::string, TermReading> terms;  // readings of the force terms by their names
   EndReadings ends;                          // means since the row before
 };
 
@@ -73,7 +73,7 @@ struct Observable {
 // Its label, or its name in words and without the unit: "ply angle" of ply_angle_deg.
 std::string quantity_of(const Observable& observable);
 
-// In the order of the columns.
+// All observables, in the order of the columns.
 const std::vector<Observable>& observables();
 
 // Adds a column behind the others; call it before anything is logged or read. Throws std::invalid_argument if the

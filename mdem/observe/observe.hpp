@@ -33,7 +33,7 @@ struct RopeShells {
 struct CrossSection {
   std::vector<Eigen::Vector2d> points;  // tube positions in the plane normal to the local rope axis, nm
   std::vector<double> radii;            // radii of the tubes, nm
-  std::vector<int> neighbours;          // by distance
+  std::vector<int> neighbours;          // neighbours in order of distance
   std::vector<int> delaunay;            // by Delaunay triangulation of `points`
   int charge = 0;                       // Q = sum over internal tubes of 6 - neighbours
   int charge_delaunay = 0;              // by `delaunay`; in-plane distances mislead it beyond beta = 54 degrees

@@ -52,6 +52,4 @@ std::string size_words(const RopeSize& size) {
                      per_m / tex, size.area, 1e-3 * density, 1e3 / density);
 }
 
-double yarn_turns(double angle, double diameter) { return std::tan(angle) / (units::pi * diameter); }
-
 }  // namespace ropewalk

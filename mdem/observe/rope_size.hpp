@@ -27,8 +27,4 @@ RopeSize rope_size(const Topology& topology, const std::vector<double>& cells, d
 // Linear density, area and density, and what a stress in GPa is in N/tex. Empty: they are not known.
 std::string size_words(const RopeSize& size);
 
-// 1/nm: turns per length of a yarn of this diameter (nm) whose surface stands at this angle (rad) to its axis. From
-// tan(angle) = pi d T.
-double yarn_turns(double angle, double diameter);
-
 }  // namespace ropewalk

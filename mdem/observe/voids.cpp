@@ -14,9 +14,9 @@ namespace ropewalk {
 namespace {
 
 constexpr double wide_ratio = 1.35;                         // ratio of circumradii
-const double passage_ratio = 0.5 * (1.0 + std::sqrt(3.0));  // in spacings
-const double packed_circumradius = 1.0 / std::sqrt(3.0);    // in spacings
-const double packed_area = 0.25 * std::sqrt(3.0);           // in spacings squared
+const double passage_ratio = 0.5 * (1.0 + std::sqrt(3.0));  // length in spacings
+const double packed_circumradius = 1.0 / std::sqrt(3.0);    // radius in spacings
+const double packed_area = 0.25 * std::sqrt(3.0);           // area in spacings squared
 
 struct Measure {
   double circumradius = 0, area = 0;

@@ -11,7 +11,7 @@ struct SceneFeatures {
   double curvature = 0, twist = 0;  // 1/nm, rad/nm, the largest expected
   double length = 0;                // nm, the longest free length of a tube
   bool sudden = false;              // a force or a moment acts at once
-  double strain = 0;                // of a tube, the largest expected
+  double strain = 0;                // largest expected strain of a tube
   double pressure = 0;              // eV/nm^3, on the innermost tube
   double turn = 0;                  // rad/nm, by which loads and motions turn the rope as a whole from its start
   Schedule course;                  // of the load or motion that takes longest to become whole

@@ -7,7 +7,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double part = 0.25;       // of the time, at the end
-constexpr double small_part = 0.1;  // of the largest value
+constexpr double small_part = 0.1;  // part of the largest value
 // Smaller angles, forces and torques are nothing that happens.
 constexpr double least_angle = 1, least_force = 0.01;  // degrees; nN or nN nm
 

@@ -108,7 +108,7 @@ MatrixXd system_of(double mu, double z, double winding) {
   const auto inverse = b.norm.head(waves).cwiseInverse().asDiagonal();
   const MatrixXd bending = inverse * b.bending.topLeftCorner(waves, waves);
   const MatrixXd turning = mu * (inverse * b.turning.topLeftCorner(waves, waves));
-  MatrixXd system = MatrixXd::Zero(4 * waves, 4 * waves);  // of real c, imaginary c, and the rates of both
+  MatrixXd system = MatrixXd::Zero(4 * waves, 4 * waves);  // rows for real c, imaginary c, and the rates of both
   const auto block = [&](int row, int column) { return system.block(row * waves, column * waves, waves, waves); };
   block(0, 2).setIdentity();
   block(1, 3).setIdentity();

@@ -59,7 +59,7 @@ struct HelixTheory {
   double static_moment = 0;       // eV, in the reading of the scene: ends that are free, or held on the axis
   double glued_over_sliding = 1;  // stiffness of a rope of glued tubes over that of all tubes: 1 + EA <rho^2>/2 EI
   bool grows = false;             // whether rates and times below are known
-  double rate = 0, hold = 0;      // of the load of one tube, eV/ps and ps
+  double rate = 0, hold = 0;      // load of one tube: its rate, eV/ps, and how long it is held, ps
   double first_amplitude = 0;     // nm; 0: not known
 
   // In the reading of the scene (eV), that whose amplitude passes `amplitude` (nm); 0: it is not known.

@@ -20,7 +20,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double step_part = 0.5;  // of the default step
+constexpr double step_part = 0.5;  // part of the default step
 constexpr int samples = 20;
 
 // One model of the scene, at its start and at its end.

@@ -5,7 +5,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double step = 1e-5;  // of strain, and of the angles of a bond
+constexpr double step = 1e-5;  // difference in strain, and in the angles of a bond
 
 Frame turned(double bend, double twist) {
   const Eigen::Matrix3d r =

@@ -10,6 +10,8 @@
 #include "python/arrays.hpp"
 #include "python/given_state.hpp"
 #include "python/scene.hpp"
+#include "python/simulation.hpp"
+#include "run/events_file.hpp"
 #include "scene/kinds/state.hpp"
 
 namespace ropewalk::python {
@@ -29,7 +31,8 @@ AtomSelection selection_of(const std::vector<int>& tubes, std::optional<double> 
 py::tuple arrays_of(const AtomicState& s, const AtomSelection& selection) {
   std::vector<TubeReference> references;
   for (const ParameterSet& set : s.sets) references.push_back(reference_of(set));
-  const AtomsOfElements atoms(s.topology, s.state, std::move(references), selected_parts(s, selection));
+  const AtomsOfElements atoms(s.topology, s.state, std::move(references), selected_parts(s, selection),
+                              s.broken);
   const auto n = static_cast<py::ssize_t>(atoms.count());
   py::array_t<double> position({n, py::ssize_t(3)});
   py::array_t<std::int64_t> tube(n), element(n);
@@ -52,14 +55,34 @@ AtomicState evaluated(const SingleState& state, const std::string& name) {
 }
 
 py::tuple atoms_in_scene(const SceneHandle& handle, const py::array_t<double>& position,
-                         const py::array_t<double>& orientation, const std::vector<int>& tubes,
-                         std::optional<double> from, std::optional<double> to) {
+                         const py::array_t<double>& orientation, const std::vector<int>& broken,
+                         const std::vector<int>& tubes, std::optional<double> from, std::optional<double> to) {
   const std::shared_ptr<const Model> model = handle.model();
   AtomicState s;
   s.sets = model->scene.sets;
   s.topology = model->prepared.topology;
   s.state = GivenState(s.topology.tube_begin, position, orientation).state();
+  s.broken = broken_flags(s.state.size(), broken);
   return arrays_of(s, selection_of(tubes, from, to));
+}
+
+std::vector<int> numbers_of(const std::vector<char>& flags) {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    if (flags[i]) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+// Elements behind which tubes have broken: at the start of a scene, in a run at `time` (ps), in a simulation now.
+std::vector<int> broken_at_start(const SceneHandle& handle) { return handle.model()->scene.memory.broken; }
+
+std::vector<int> broken_in_run(const std::string& events, const SceneHandle& handle, double time) {
+  return numbers_of(StoredEvents(events, handle.model()->prepared.topology).broken_at(time));
+}
+
+std::vector<int> broken_now(const SteppedScene& stepped) {
+  const std::vector<char>* broken = stepped.simulation().broken_bonds();
+  return broken ? numbers_of(*broken) : std::vector<int>();
 }
 
 py::tuple atoms_of_state(const std::vector<int>& tube_begin, const py::array_t<double>& position,
@@ -172,6 +195,9 @@ void coarsen_frames(const py::function& next, const std::vector<bool>& carbon, c
 
 void bind_atoms(py::module_& m) {
   m.def("atoms_in_scene", atoms_in_scene);
+  m.def("broken_at_start", broken_at_start);
+  m.def("broken_in_run", broken_in_run);
+  m.def("broken_now", broken_now);
   m.def("atoms_of_state", atoms_of_state);
   m.def("atoms_of_file", atoms_of_file);
   m.def("coarsen_files", coarsen_files, py::arg("files"), py::arg("out"), py::arg("force"), py::arg("parameters"),

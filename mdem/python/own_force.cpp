@@ -60,7 +60,7 @@ class OwnDrive : public Drive {
   std::string why_not_split() const override {
     return "it has forces of one's own, which know these elements alone";
   }
-  std::string not_for_lammps() const override { return "forces of one's own"; }
+  NotForLammps not_for_lammps() const override { return {"forces of one's own", "its ranks have no Python"}; }
 
  private:
   std::shared_ptr<OwnForce> force_;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/units.hpp"
-#include "observe/rope_size.hpp"
+#include "model/yarn.hpp"
 #include "report/log_figures.hpp"
 #include "report/scatter.hpp"
 
@@ -47,7 +47,7 @@ Mean turns_per_m(const LoadTestKind& kind, const LoadTestGroup& group) {
 }
 
 // Limits that the replicates of a group passed, one replicate after the other. first_limit() finds the earliest.
-std::vector<LimitRecord> earliest_limits(const LoadTestGroup& group) {
+std::vector<LimitRecord> all_limits(const LoadTestGroup& group) {
   std::vector<LimitRecord> all;
   for (const LoadTest& t : group.tests) all.insert(all.end(), t.limits.begin(), t.limits.end());
   return all;
@@ -122,7 +122,7 @@ std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestG
       const Mean m = mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; });
       text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
     }
-    text += "," + limit_cells(earliest_limits(g)) + "\n";
+    text += "," + limit_cells(all_limits(g)) + "\n";
   }
   return text;
 }
@@ -151,7 +151,7 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
     html += fmt::format("<tr><th>{}</th><td>{} of {}</td>", escape_markup(g.name), followed(g), g.tests.size());
     cell(mean_at(g, x));
     if (kind.yarn_diameter > 0) cell(turns_per_m(kind, g));
-    const std::vector<LimitRecord> limits = earliest_limits(g);
+    const std::vector<LimitRecord> limits = all_limits(g);
     const LimitRecord* first = first_limit(limits);
     html += first
                 ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))

@@ -31,7 +31,7 @@ struct LoadTestKind {
   const char* heading;
   const char* words;                                        // HTML above the table
   const char* drawn;                                        // what the first column is, in a figure
-  const char* unit;                                         // of the first column
+  const char* unit;                                         // unit of the first column
   std::vector<OutputColumn> columns;                        // the first is drawn
   bool yarn_law = false;                                    // over beta_deg with cos^2 of that angle
   std::vector<std::pair<double, std::string>> levels = {};  // to compare the first column with, and their names

@@ -18,7 +18,7 @@ struct Trace {
   LogValue value;
   int colour = 0;
   bool dashed = false;
-  LogValue half_width = {};  // of a band about it
+  LogValue half_width = {};  // half width of a band about it
 };
 
 struct Panel {
@@ -34,7 +34,7 @@ struct Panel {
 // A relaxation has steps, but no time.
 struct Clock {
   ChartAxis axis;
-  std::string column;  // of the log
+  std::string column;  // column of the log
 
   bool counts_steps() const { return column == "step"; }
 };

@@ -10,8 +10,8 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t max_rows = 60;  // of a table under a chart
-constexpr int max_decimals = 9;       // of a number beside its error
+constexpr std::size_t max_rows = 60;  // rows of a table under a chart
+constexpr int max_decimals = 9;       // decimals of a number beside its error
 
 // Decimals of a column: five digits of the largest value, and the same decimals in all rows.
 int decimals_of(const TableColumn& column) {
@@ -160,10 +160,17 @@ std::string measured_text(double value, double error) {
   return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
+namespace {
+
+// Between interatomic potentials of carbon, in the unit of the quantity; 0: none.
+double spread_of(const Quantity& q) { return q.of_carbon ? potential_spread(q.key) * std::fabs(q.value) : 0; }
+
+}  // namespace
+
 std::string measured_text(const Quantity& q, bool and_unit) {
   std::string text = measured_text(q.value, q.standard_error.value_or(0));
-  if (const double spread = potential_spread(q.key) * std::fabs(q.value); spread > 0) {
-    const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // of its second digit
+  if (const double spread = spread_of(q); spread > 0) {
+    const double unit = std::pow(10.0, std::floor(std::log10(spread)) - 1);  // unit of its second digit
     text += fmt::format(" ± {:g} (potential)", std::round(spread / unit) * unit);
   }
   return and_unit && q.unit != "1" ? text + " " + q.unit : text;
@@ -194,7 +201,7 @@ std::string parameters_part(const std::string& name, const std::string& referenc
         "<tr><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape_markup(q.key), value_text(q), with_powers(q.unit),
         q.standard_error ? number_text(*q.standard_error, 2) : "<span class=\"soft\">not published</span>",
-        potential_spread(q.key) > 0 ? number_text(potential_spread(q.key) * std::fabs(q.value), 2) : "",
+        spread_of(q) > 0 ? number_text(spread_of(q), 2) : "",
         escape_markup(q.origin), escape_markup(q.doi));
   return html + "</tbody></table></div>\n";
 }

@@ -11,12 +11,12 @@
 namespace ropewalk {
 
 struct PlateInput {
-  std::vector<RopeView> views;          // in the order of time
+  std::vector<RopeView> views;          // views in the order of time
   std::vector<ReportSection> sections;  // of the same frames; empty: none are drawn
   RopeShells shells;
   double tube_radius = 0;
   std::vector<LogRow> log;
-  std::vector<LogRow> errors;  // of its rows, drawn as bands; empty: not known
+  std::vector<LogRow> errors;  // errors of its rows, drawn as bands; empty: not known
   // Charts below, each with one column or more of the same unit; empty: none.
   std::vector<std::vector<std::string>> curves;
   std::string x;  // a column of the log, over which the charts are drawn; empty: time

@@ -51,13 +51,13 @@ struct ReportInput {
   int bonds = 0;
   bool rope = false;                   // several tubes of one length, parallel at the start
   bool loaded = false;                 // by [twist], grips or loads
-  std::vector<ReportLoading> loading;  // in the order of time
+  std::vector<ReportLoading> loading;  // loadings in the order of time
   Validity validity;
-  Equilibria equilibria;  // of a run with load steps
+  Equilibria equilibria;  // equilibria of a run with load steps
   LimitsFile watched;     // empty if the run has no limits.json
   RunResults results;
 
-  RopeShells shells;                    // of the untwisted rope
+  RopeShells shells;                    // shells of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown
   std::vector<RopeView> views;          // likewise
   bool in_space = false;                // view.html stands beside the report

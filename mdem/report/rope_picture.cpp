@@ -24,7 +24,7 @@ constexpr std::size_t max_bytes_in_page = 60000, max_bytes_of_file = 250000;
 constexpr int rope_colours = 12;
 constexpr double reach = 1.28;           // half the stroke behind a tube, radii: closes the gap to its neighbour
 constexpr double layer_thickness = 1.2;  // radii
-constexpr double overlap = 0.25;         // of two pieces of a tube, radii
+constexpr double overlap = 0.25;         // overlap of two pieces of a tube, radii
 constexpr double per_nm = 100;           // coordinates are whole hundredths of a nanometre
 
 struct Extent {
@@ -48,7 +48,7 @@ struct Segment {
   std::size_t element;  // where a is
   double value;         // that it is coloured by
   bool visible;
-  int size = 0;  // of the tube, an index of sizes_of()
+  int size = 0;  // size of the tube, an index of sizes_of()
 };
 using SeenTube = std::vector<Segment>;
 

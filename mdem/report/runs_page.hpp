@@ -15,7 +15,7 @@ namespace ropewalk {
 struct RunMeans {
   double over_ps = 0;
   LogRow value;
-  LogRow error;           // of blocks (io/log_mean.hpp), of replicates that of their scatter; nan: none
+  LogRow error;           // error by blocks (io/log_mean.hpp), for replicates by their scatter; nan: none
   LogRow correlation_ps;  // the mean over replicates
   LogRow needed_ps;       // where the time is too short for an error; else 0
 };
@@ -31,8 +31,8 @@ struct RunCurve {
   std::vector<LogRow> error;
   std::size_t replicates = 1;
   std::string remark;                    // how it ended
-  std::vector<LimitRecord> limits = {};  // of the run, or of the replicate that passed a limit first
-  std::optional<RopeView> view = {};     // of the last frame, of the first replicate
+  std::vector<LimitRecord> limits = {};  // limits of the run, or of the replicate that passed a limit first
+  std::optional<RopeView> view = {};     // last frame of the first replicate
   double tube_radius = 0;                // nm
   std::optional<RunMeans> means = {};    // in the table of ends, in the place of the last rows
 };

@@ -21,6 +21,8 @@ struct Row {
   const char *name, *key;
 };
 constexpr Row compared[] = {{"radius", "tube.radius"},
+                            {"contact radius", "filament.contact_radius"},
+                            {"mass per length", "filament.mass_per_length"},
                             {"EA", "bond.EA"},
                             {"EI", "bond.EI"},
                             {"GJ", "bond.GJ"},
@@ -52,7 +54,7 @@ std::string difference(const ParameterSet& first, const ParameterSet& other, con
   const Quantity *a = find_quantity(first, key), *b = find_quantity(other, key);
   if (!a || !b || std::fabs(a->value) < 1e-6) return "";
   const bool alike = provenance_value(first, "potential_hash") == provenance_value(other, "potential_hash");
-  const double spread = alike ? 0 : potential_spread(key);
+  const double spread = alike || !a->of_carbon || !b->of_carbon ? 0 : potential_spread(key);
   const double error = std::hypot(std::hypot(a->standard_error.value_or(0), b->standard_error.value_or(0)),
                                   spread * a->value, spread * b->value);
   const double change = b->value - a->value;
@@ -106,7 +108,7 @@ std::vector<std::vector<std::string>> sets_table(const std::vector<ParameterSet>
   words("tube", tube_name);
   words("potential", [](const ParameterSet& set) {
     const std::string name = provenance_value(set, "potential");
-    return name.empty() ? "not known" : name;
+    return set.filament ? "none: a filament" : name.empty() ? "not known" : name;
   });
   for (const Row& row : compared) {
     out.push_back({row.name, unit_of(sets, row.key)});
@@ -169,6 +171,10 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
            sets, "Energy of two parallel tubes", {"distance of the axes minus 2 r", "nm"}, energy,
            [](const ParameterSet& s, double& a, double& b) {
              a = 0.285, b = 0.9;
+             if (s.filament && s.line) {
+               const double gap = s.line->pair_spacing - 2 * s.radius;
+               a = 0.9 * gap, b = 3 * gap;
+             }
              return s.line || s.paper;
            },
            [](const ParameterSet& s, double x) {
@@ -207,7 +213,7 @@ std::string sets_json(const std::vector<ParameterSet>& sets) {
         j[row.key] = {{"value", q->value}, {"unit", q->unit}};
         j[row.key]["standard_error"] =
             q->standard_error ? nlohmann::ordered_json(*q->standard_error) : nlohmann::ordered_json();
-        if (const double spread = potential_spread(row.key); spread > 0)
+        if (const double spread = q->of_carbon ? potential_spread(row.key) : 0; spread > 0)
           j[row.key]["potential_error"] = spread * std::fabs(q->value);
       }
     all.push_back(std::move(j));

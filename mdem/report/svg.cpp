@@ -81,7 +81,7 @@ struct Scale {
   AxisRange range;
   double step = 1;
   int power = 0;         // ticks are in units of 10^power
-  bool decades = false;  // of logarithms
+  bool decades = false;  // a scale of logarithms
   std::vector<double> ticks;
   std::vector<std::string> labels;
 };
@@ -384,7 +384,7 @@ std::string draw_regions(const LineChart& chart, const Plot& plot) {
 struct EndLabel {
   const ChartLine* line;
   double end;    // where the line ends
-  double end_x;  // in units of the data
+  double end_x;  // end in units of the data
   double at;     // where its name stands
 };
 

@@ -77,7 +77,7 @@ struct LineChart {
   // From here to the right the chart is hatched, under the name that stands at the top; NaN: nowhere.
   double beyond = std::numeric_limits<double>::quiet_NaN();
   std::string beyond_name = {};
-  std::string note = {};  // in the lower right corner
+  std::string note = {};  // words in the lower right corner
 };
 
 // False if no line has two finite points at different x.
@@ -99,7 +99,7 @@ struct RopeView {
   double beta_deg = 0;
   std::vector<std::vector<Vector3>> tubes;  // nm
   RopeColours coloured_by = {};
-  std::vector<std::vector<double>> colour = {};    // of each element, in its unit; none: shaded by depth alone
+  std::vector<std::vector<double>> colour = {};    // quantity of each element, in its unit; none: shaded by depth alone
   std::vector<double> radii = {};                  // nm, of the tubes; none: all are of the one radius
   std::vector<std::array<Vector3, 2>> links = {};  // nm, on the axes of the two tubes; drawn in red
 };

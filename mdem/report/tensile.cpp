@@ -7,7 +7,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double slack_stress = 0.1, half_stress = 0.5;  // of the largest
+constexpr double slack_stress = 0.1, half_stress = 0.5;  // parts of the largest stress
 
 struct TensileQuantity {
   OutputColumn column;

@@ -7,9 +7,9 @@
 namespace ropewalk {
 namespace {
 
-constexpr double half_torque = 0.5;  // of the largest
+constexpr double half_torque = 0.5;  // part of the largest torque
 
-// Of result_columns().
+// Names of columns in result_columns().
 const char* const shown[] = {"torque_max_nN_nm", "torque_max_at_deg", "torque_within_nN_nm",
                              "first_break_deg",  "tubes_broken",      "stored_at_limit_MJ_per_kg"};
 

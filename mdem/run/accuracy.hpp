@@ -14,11 +14,11 @@ struct Accuracy {
     double here = 0, finer = 0;
     double error = 0;  // relative, as plan/outcome.hpp has it
   };
-  std::string against;                 // in words
-  std::map<std::string, Value> found;  // by observable
+  std::string against;                 // finer model, in words
+  std::map<std::string, Value> found;  // error of each observable
 };
 
-// By their logs. Throws InputError for a run without rows.
+// Compares the logs of two runs. Throws InputError for a run without rows.
 Accuracy accuracy_against(const RunDirectory& dir, const RunDirectory& finer);
 // `stretch`: ps.
 Accuracy accuracy_by_stretch(const RunDirectory& dir, double stretch);

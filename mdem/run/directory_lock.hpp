@@ -7,7 +7,7 @@
 
 namespace ropewalk {
 
-inline constexpr const char* lock_name = "lock";  // of the file in the directory
+inline constexpr const char* lock_name = "lock";  // name of the file in the directory
 
 // A lock on the file `lock`, which holds the name of the process. The lock of a process that was killed ends with
 // it; the file then stays, and the next one takes it over. Where the file system knows no locks the file alone

@@ -95,7 +95,7 @@ StoredEvents::StoredEvents(const std::string& path, const Topology& topology) : 
                "bring the line back");
     return topology.tube_begin[static_cast<std::size_t>(t)] + static_cast<int>(element);
   };
-  std::map<std::pair<int, int>, std::deque<std::size_t>> holding;  // by the elements that they join
+  std::map<std::pair<int, int>, std::deque<std::size_t>> holding;  // links by the elements that they join
   each_event(path, [&](CsvReader& csv, const std::string& what) {
     const double time = csv.finite_number(0, "time_ps");
     if (what == "tube broke") {
@@ -122,12 +122,19 @@ std::vector<std::pair<int, int>> StoredEvents::links_at(double time) const {
   return held;
 }
 
-Topology StoredEvents::tubes_at(double time) const {
-  std::vector<char> broken(static_cast<std::size_t>(topology_.elements()), 0);
-  bool some = false;
+std::vector<char> StoredEvents::broken_at(double time) const {
+  std::vector<char> broken;
   for (const Break& b : breaks_)
-    if (b.time <= time) broken[static_cast<std::size_t>(b.element)] = some = true;
-  return some ? cut_behind(topology_, broken) : topology_;
+    if (b.time <= time) {
+      broken.resize(static_cast<std::size_t>(topology_.elements()), 0);
+      broken[static_cast<std::size_t>(b.element)] = 1;
+    }
+  return broken;
+}
+
+Topology StoredEvents::tubes_at(double time) const {
+  const std::vector<char> broken = broken_at(time);
+  return broken.empty() ? topology_ : cut_behind(topology_, broken);
 }
 
 }  // namespace ropewalk

@@ -36,6 +36,8 @@ class StoredEvents {
   };
   StoredEvents(const std::string& path, const Topology& topology);
   bool any_breaks() const { return !breaks_.empty(); }
+  // Whether the tube has broken behind each element at this time (ps); empty: none has.
+  std::vector<char> broken_at(double time) const;
   // The tubes at this time (ps), cut where they have broken.
   Topology tubes_at(double time) const;
   // All that ever held.

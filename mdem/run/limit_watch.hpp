@@ -13,12 +13,12 @@ namespace ropewalk {
 
 enum class OnLimit { warn, stop, refine };
 
-// From the word of the command line. Throws InputError.
+// Reads the word of the command line. Throws InputError.
 OnLimit on_limit_of(const std::string& word);
 
 // Energies that limits of the whole run are judged by. NaN: not known, or not to be judged.
 struct RunEnergies {
-  double drift = std::numeric_limits<double>::quiet_NaN();    // of the account: energy_drift()
+  double drift = std::numeric_limits<double>::quiet_NaN();    // energy_drift() of the account
   double kinetic = std::numeric_limits<double>::quiet_NaN();  // eV
 };
 

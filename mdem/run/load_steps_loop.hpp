@@ -21,7 +21,7 @@ class LoadStepsLoop {
 
  private:
   bool begins() const { return found_.empty(); }
-  std::size_t next() const;  // of the times
+  std::size_t next() const;  // index of the next time
   Statics rest_at(double time);
   bool goes_on();
   void write(const Statics& end);

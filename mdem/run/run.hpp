@@ -17,7 +17,7 @@ enum class RunEnd {
   not_relaxed,
   at_limit,
   wall_time,
-  asked,       // by the listener
+  asked,       // the listener asked for an end
   failed,      // the calculation went wrong
   broken_off,  // a full disk, no memory: `resume` goes on from the last good state
 };
@@ -27,7 +27,7 @@ class Run;
 struct RunResult {
   RunEnd end = RunEnd::finished;
   RunDirectory directory;
-  std::string reason;                // in words
+  std::string reason;                // why it ended, in words
   std::string remedy;                // of a relaxation that resuming does not bring to rest
   std::string passed;                // limits, in words
   std::string beyond_since;          // since when and by which limit, a sentence; empty: within all limits
@@ -36,12 +36,12 @@ struct RunResult {
   std::vector<std::string> results;  // a sentence each
   std::string damping;               // its part of the lost energy, in words
   std::string network;               // of a film at its end, in words
-  std::vector<Judgement> expected;   // of the [[expect]] tables
+  std::vector<Judgement> expected;   // verdicts on the [[expect]] tables
   std::string missing;               // files
   std::int64_t steps = 0;
   double time_ps = 0, wall_seconds = 0;
   bool relaxes = false;
-  std::exception_ptr error;   // of a run that failed or broke off
+  std::exception_ptr error;   // error of a run that failed or broke off
   std::unique_ptr<Run> next;  // the run in which it goes on, elements split
 };
 

@@ -22,7 +22,7 @@ struct RunOrigin {
   std::vector<std::string> sets;   // hashes of the parameter sets
   std::vector<std::string> files;  // hashes of the files that drives were read from
   std::string state;               // hash of the start, of a scene that reads its state from a file
-  std::string version, git_id;     // of the program
+  std::string version, git_id;     // version of the program
   std::string instructions;        // see instructions_in_use()
   std::string device;              // as --device names it; empty: none
   std::string own_forces;          // how many forces of one's own it has, in Python; empty: none
@@ -38,7 +38,7 @@ struct FileMarks {
 struct RunCheckpoint {
   FileMarks files;          // they are cut back to these
   double first_energy = 0;  // eV, total at the start: origin of the balance
-  EnergyMark energy;        // of the state
+  EnergyMark energy;        // energies of the state
   double wall_seconds = 0;
   StepControl control;
   OnLimit on_limit = OnLimit::warn;

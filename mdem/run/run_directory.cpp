@@ -42,8 +42,8 @@ bool ends_in(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Of the directory `errors`: errors.json and numerics.json, the directories of the runs behind numerics.json, and
-// for each run behind errors.json NAME-plus.toml and the directory NAME-plus.
+// Contents of the directory `errors`: errors.json and numerics.json, the directories of the runs behind numerics.json,
+// and for each run behind errors.json NAME-plus.toml and the directory NAME-plus.
 bool is_errors_file(const std::string& name) {
   for (const char* run : {"half-elements", "half-step", "half-rate", "tenth-tolerance", "start-*"})
     if (fits(name, run)) return true;
@@ -108,6 +108,7 @@ const std::vector<OutputFile>& run_files() {
       {"sections.csv", "coarsen", "radius, ovality and shear of the elements' atoms, means over the frames"},
       {"README.txt", "export", "how to run LAMMPS here"},
       {"in.rope", "export", "input of LAMMPS"},
+      {"job.sh", "export", "a job for SLURM that runs it"},
       {"rope.state", "export", "binary: the state where LAMMPS begins"},
       {"tubes.csv", "export", "tubes, by kind"},
       {"lammps.json", "export", "where the run stands"},

@@ -45,7 +45,7 @@ struct RunParts {
   LogRow last_row;
   StopReason at_once = StopReason::none;  // before the first step
   bool took_all_steps = false;            // a relaxation had run out of its steps when it was resumed
-  bool told_break = false;                // of the tubes
+  bool told_break = false;                // the first break of a tube is reported
   std::string asked_by;                   // who asked for an end
   std::string reason;                     // of the end, in words
   std::string remedy;                     // where a relaxation does not come to rest; empty: resume it

@@ -22,7 +22,7 @@ class RunSchedule {
   // Of the scene. A run that --steps or --until ends at another one stops on the way.
   std::int64_t scene_end() const { return scene_end_; }
   bool ends_with_the_scene() const { return last_step_ == scene_end_; }
-  std::size_t expected_frames() const { return expected_frames_; }  // of the whole scene
+  std::size_t expected_frames() const { return expected_frames_; }  // frames of the whole scene
   bool has_row(std::int64_t step) const { return step % log_every_ == 0; }
   bool has_frame(std::int64_t step) const { return step % frames_every_ == 0; }
   // `closely`: see StepControl.

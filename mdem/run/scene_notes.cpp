@@ -112,7 +112,7 @@ void warn_of_no_centre_line(const Topology& topology, const State& state, std::v
 
 // Collapsed tubes twist on without end where nothing else holds the moment.
 void warn_of_collapsing_moment(const Scene& scene, const Prepared& p, std::vector<std::string>& warnings) {
-  // Of the type that bears least.
+  // The warning is about the type that bears least.
   double most = std::numeric_limits<double>::infinity();
   std::size_t weakest = 0;
   for (const int k : p.topology.tube_type) {

@@ -10,12 +10,13 @@
 
 #include <cstdint>
 
+#include "sim/dynamics/energy_mark.hpp"
 #include "sim/dynamics/shorter_steps.hpp"
 
 namespace ropewalk {
 
 struct StepControl {
-  static constexpr std::int64_t window = 128, least_keep = 512, most_keep = 8192;  // steps
+  static constexpr std::int64_t window = account_window, least_keep = 512, most_keep = 8192;  // steps
   static constexpr int most = most_parts_of_a_step;
 
   std::int64_t kept_until = 0;     // the step before which steps stay divided
@@ -30,24 +31,5 @@ struct StepControl {
   // At a mark, after a window without failure.
   void lengthen(Simulation& simulation);
 };
-
-// The account of energy at one time.
-struct EnergyMark {
-  double energy = 0;  // eV, in all; NaN where it is not known
-  EnergySupply supply;
-};
-EnergyMark energy_mark(const Simulation& simulation);
-
-// Whether the account of energy closes since the mark: the work of the loads and of the bath, less what damping
-// took, equals the change of the energy. The error may be 3 % of the energies that move. A step that is too long
-// adds more than that soon before it blows up. The error of a sound run, cold or hot, is at most 1 %. Its
-// sum is judged by the limit energy_drift (observe/limits.hpp). Where next to nothing moves, the error may be as
-// large as the rounding of the energies: 1e-9 eV for each element, and in mixed precision 1.2e-7 of the contact
-// energy.
-bool account_closes(const EnergyMark& mark, const Simulation& simulation);
-// The same verdict from energies in eV, for a run of another engine. `contact`: its energy in mixed precision, else
-// 0.
-bool account_closes(const EnergyMark& mark, const EnergyMark& now, double kinetic, double bonds, double contact,
-                    std::size_t elements);
 
 }  // namespace ropewalk

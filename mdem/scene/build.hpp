@@ -1,4 +1,4 @@
-// From a scene to its elements at time zero.
+// Builds the elements of a scene at time zero.
 #pragma once
 
 #include "scene/scene.hpp"

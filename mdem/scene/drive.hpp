@@ -86,8 +86,12 @@ class Drive {
   // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.
   virtual std::string why_not_split() const { return ""; }
   virtual std::string why_not_lengthened() const { return why_not_split(); }
-  // The key of the scene, or the table, that LAMMPS cannot carry; empty: it can.
-  virtual std::string not_for_lammps() const { return ""; }
+  // What LAMMPS cannot carry; no key: it can.
+  struct NotForLammps {
+    std::string key;     // key of the scene, or the table
+    std::string reason;  // behind "is not for LAMMPS: "
+  };
+  virtual NotForLammps not_for_lammps() const { return {}; }
 };
 
 }  // namespace ropewalk

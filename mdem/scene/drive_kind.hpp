@@ -44,7 +44,7 @@ std::string words_of(const TypePairs& pairs);
 // tables claim the same pair.
 void read_listed_drives(const DriveKind& kind, const std::vector<TomlTable>& tables, Scene& scene);
 
-// In the order of help and templates.
+// All kinds of drives, in the order of help and templates.
 const std::vector<DriveKind>& drive_kinds();
 // For drives from elsewhere; returns true, so that a static variable can do it. The table's name must be new.
 bool add_drive_kind(DriveKind kind);

@@ -7,9 +7,9 @@
 namespace ropewalk {
 
 struct Expectation {
-  std::string column;        // of the log
+  std::string column;        // column of the log
   std::optional<double> at;  // ps; none: the last row
-  double value = 0;          // in the unit of the column
+  double value = 0;          // expected value in the unit of the column
   double tolerance = 0;      // absolute, likewise
   std::string scene_hash;    // what_is_run_hash() of the scene that it holds for; empty: for this scene, as it is
   bool of_other_scene = false;  // the scene has another hash: it is not judged

@@ -21,7 +21,7 @@ struct InputNumber {
   Of of = Of::scene;
   std::size_t index = 0;                 // of the set, or of the file among input_files()
   std::string key;                       // "bond.EA", "friction.strength", "links.1.stiffness_nN_per_nm"
-  double value = 0;                      // in the unit of its file
+  double value = 0;                      // value in the unit of its file
   std::optional<double> standard_error;  // none: not stated
   bool typed = true;                     // false: the default of a key that the scene leaves out
 };

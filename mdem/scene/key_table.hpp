@@ -26,7 +26,7 @@ struct Scene;
 
 struct Unit {
   const char* name;
-  double size;  // in internal units (nm, ps, eV, rad)
+  double size;  // size in internal units (nm, ps, eV, rad)
 };
 
 namespace unit {
@@ -38,7 +38,7 @@ inline constexpr Unit nN{"nN", units::nN_nm}, nN_nm{"nN nm", units::nN_nm};
 // The value of a key that is missing.
 struct Presence {
   std::string value;     // as TOML; empty: that of the struct
-  std::string standard;  // in words; empty: `value`
+  std::string standard;  // default in words; empty: `value`
 };
 // An error. `example` is for the templates.
 inline Presence required(std::string example) { return {std::move(example), "required"}; }

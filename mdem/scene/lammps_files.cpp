@@ -23,7 +23,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char *start_format = "ropewalk-lammps-2", *sums_key = "sums";
+constexpr const char *start_format = "ropewalk-lammps-2", *sums_key = "sums",
+                     *came_broken_key = "tubes_came_broken";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
@@ -41,6 +42,8 @@ void visit_start(S&& s, const Visit& v) {
     s.strand_holes);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
+  v({came_broken_key, "", "whether tubes were broken in the state that the scene began with, and no others break"},
+    s.tubes_came_broken);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
   v({sums_key, "", "hashes of `in.rope`, `tubes.csv` and `rope.state`, to which `import` holds them"}, s.sums);
 }
@@ -102,14 +105,16 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
-  std::string lacking = scene.source->not_for_lammps();
+  Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
-    if (lacking.empty()) lacking = drive->not_for_lammps();
-  if (lacking.empty() && scene.bath() && scene.contact.law == "none") lacking = "thermostat (without contact)";
-  if (lacking.empty() && scene.run.stepping.runge_kutta) lacking = "run.integrator";
-  if (lacking.empty() && scene.run.solver != RunOptions::Solver::fire) lacking = "run.solver";
-  if (!lacking.empty())
-    throw InputError(place_in(scene, lacking), "is not for LAMMPS", "run this scene with `ropewalk run`");
+    if (lacking.key.empty()) lacking = drive->not_for_lammps();
+  if (lacking.key.empty() && scene.run.stepping.runge_kutta)
+    lacking = {"run.integrator", "it evaluates forces once in a step"};
+  if (lacking.key.empty() && scene.run.solver != RunOptions::Solver::fire)
+    lacking = {"run.solver", "its ranks have no solver of linear systems"};
+  if (!lacking.key.empty())
+    throw InputError(place_in(scene, lacking.key), "is not for LAMMPS: " + lacking.reason,
+                     "run this scene with `ropewalk run`");
 }
 
 std::string start_json(const LammpsStart& start) {
@@ -127,9 +132,11 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
-      if (key.name == std::string(sums_key) && !json.contains(sums_key)) return;  // of version 0.3.0
+      const bool newer = key.name == std::string(sums_key) || key.name == std::string(came_broken_key);
+      if (newer && !json.contains(key.name)) return;  // version 0.3.0 wrote none
       const Json& found = json.at(key.name);
-      if (std::is_integral_v<std::decay_t<decltype(value)>> && !found.is_number_integer())
+      using Value = std::decay_t<decltype(value)>;
+      if (std::is_integral_v<Value> && !std::is_same_v<Value, bool> && !found.is_number_integer())
         throw InputError({path, 0, key.name}, "is no whole number", export_again);
       found.get_to(value);
     });
@@ -189,7 +196,7 @@ void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology&
 
 namespace {
 
-constexpr std::array<const char*, 4> of_a_term = {"term", "lost", "drag", "events"};
+constexpr std::array<const char*, 5> of_a_term = {"term", "lost", "drag", "events", "begun"};
 
 // Names of the numbers that fix `motion` writes in a row.
 std::vector<std::string> row_names(int terms) {
@@ -202,7 +209,7 @@ std::vector<std::string> row_names(int terms) {
 
 std::string row_title(int terms) {
   std::string title = column_names(row_columns);
-  for (int k = 1; k <= terms; ++k) title += fmt::format(",term{0}_eV,lost{0}_eV,drag{0}_eV,events{0}", k);
+  for (int k = 1; k <= terms; ++k) title += fmt::format(",term{0}_eV,lost{0}_eV,drag{0}_eV,events{0},begun{0}", k);
   return title;
 }
 
@@ -224,7 +231,6 @@ std::string row_variables(int terms) {
 }
 
 std::string pair_line(const LammpsScript& s) {
-  if (s.law == "none") return fmt::format("pair_style zero {} nocoeff", s.reach);
   return fmt::format("pair_style mdem/{} ${{dir}} ${{forces}}", s.law);
 }
 
@@ -246,6 +252,7 @@ std::string lammps_input(const LammpsScript& s) {
       "variable steps index {}\n"
       "variable last equal {}+${{steps}}\n"
       "variable every index {}\n"
+      "if \"$(is_defined(variable,wall)) == 1\" then \"timer timeout ${{wall}}\"  # seconds, or hours:minutes:seconds\n"
       "units lj\n"
       "atom_style hybrid sphere bond\n"
       "boundary m m m\n"
@@ -282,7 +289,36 @@ std::string lammps_input(const LammpsScript& s) {
       "unfix rows\n"
       "print \"{0}\" append ${{dir}}/lammps-rows.csv screen no\n",
       row_format(s.terms), row_title(s.terms));
+  // A relaxation ends where forces are small.
+  if (!s.relax) text += "if \"$(is_defined(variable,wall)) == 1 && $(step) < ${last}\" then \"quit 6\"\n";
   return text;
+}
+
+std::string lammps_job(const LammpsScript& s, int elements) {
+  // Above, ghosts and messages take more than they spare (mdem/lammps/README.md, Scaling).
+  const int fewest_of_a_rank = s.long_in_z ? 5000 : 20000, ranks = std::max(1, elements / fewest_of_a_rank);
+  return fmt::format(
+      "#!/bin/sh\n"
+      "# For SLURM. Submit it once, from this directory: sbatch job.sh. A job whose time is over submits the next one,\n"
+      "# which goes on from the last state. Then: ropewalk import .\n"
+      "#SBATCH --job-name=ropewalk\n"
+      "#SBATCH --ntasks={}\n"
+      "#SBATCH --time=24:00:00\n"
+      "#SBATCH --output=messages.txt\n"
+      "#SBATCH --open-mode=append\n"
+      "# Add --partition and --account as your cluster asks.\n"
+      "from=rope.state\n"
+      "[ -s lammps.states ] && from=lammps.states\n"
+      "before=$(wc -c lammps.states 2> /dev/null)\n"
+      "now=$(date +%s)\n"
+      "# A part of the time stays for the last state and the next job.\n"
+      "left=$((${{SLURM_JOB_END_TIME:-$((now + 86400))}} - now))\n"
+      "srun lmp-ropewalk -in in.rope -var from $from -var wall $((left - left / 20))\n"
+      "code=$?\n"
+      "[ $code = 6 ] || exit $code\n"
+      "[ \"$(wc -c lammps.states)\" != \"$before\" ] || {{ echo 'no step was taken: give the job more time'; exit 6; }}\n"
+      "exec sbatch job.sh\n",
+      ranks);
 }
 
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms) {
@@ -300,6 +336,7 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
+      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // not of version 0.3.0
     }
     for (double* value : values) {
       if (!take(line, *value))

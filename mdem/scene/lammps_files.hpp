@@ -5,6 +5,7 @@
 //   tubes.csv     tubes of a kind after one another: how many, elements of each, type
 //   rope.state    the state and its forces (scene/lammps_states.hpp)
 //   in.rope       LAMMPS input
+//   job.sh        a job for SLURM that runs it
 //   lammps.states, lammps-rows.csv   what LAMMPS writes: states and energies
 #pragma once
 
@@ -29,6 +30,7 @@ struct LammpsStart {
   std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
   double strand_holes = 0;                          // TubeGroups::strand_holes
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
+  bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
   std::vector<std::string> parameters;              // files, of each tube type
   std::map<std::string, std::string> sums;          // of the files that LAMMPS reads, by name; empty: an older export
 };
@@ -43,6 +45,7 @@ struct LammpsDirectory {
   std::string first_state() const { return file("rope.state"); }
   std::string input() const { return file("in.rope"); }
   std::string readme() const { return file("README.txt"); }
+  std::string job() const { return file("job.sh"); }
   std::string states() const { return file("lammps.states"); }
   std::string rows() const { return file("lammps-rows.csv"); }
 };
@@ -70,7 +73,7 @@ struct LammpsScript {
   std::string law = "paper";
   bool damped = false, driven = false, relax = false;
   bool long_in_z = true;  // a rope or a chain: cut across it
-  int types = 1;          // of tubes
+  int types = 1;          // number of tube types
   Vector3 low, high;      // the box; it grows with the elements, and never shrinks below this
   double skin = 0, reach = 0;
   int excluded_elements = 3;  // neighbours along any tube that contact skips, at least
@@ -79,6 +82,8 @@ struct LammpsScript {
   int terms = 0;  // force terms, each with its energy and its account in a row
 };
 std::string lammps_input(const LammpsScript& script);
+// A job for SLURM that runs it, and submits itself again where its time was too short.
+std::string lammps_job(const LammpsScript& script, int elements);
 
 // The numbers of one row of LAMMPS's energies, in the order of the file.
 struct LammpsRow {
@@ -88,7 +93,8 @@ struct LammpsRow {
   std::vector<double> terms;          // eV, of each force term
   std::vector<TermAccount> accounts;  // likewise
 };
-inline constexpr int lammps_row_numbers = 10;  // without the step and the terms
+inline constexpr int lammps_row_numbers = 10;     // without the step and the terms
+inline constexpr int lammps_numbers_of_term = 5;  // energy, lost, drag, events, begun
 // A last line without its end, as after a kill, is left out.
 std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t terms = 0);
 

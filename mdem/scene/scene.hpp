@@ -41,7 +41,7 @@ struct BondOptions {
 };
 
 struct ContactOptions {
-  std::string law = "paper";  // of scene/laws/contact_law_kind.hpp, or "none"
+  std::string law = "paper";  // a name in scene/laws/contact_law_kind.hpp, or "none"
   bool legacy_torque = false;
   double exclude_along_tube = 0;  // nm; 0: least_exclusion()
   double skin = 0;                // nm; 0: chosen by the program
@@ -58,7 +58,7 @@ struct RunOptions {
   Solver solver = Solver::fire;  // relax mode
   double time_step = 0;          // ps; 0: chosen from the stiffest mode
   Stepping stepping;
-  double mass_scale = 1;         // of masses and inertias
+  double mass_scale = 1;         // factor on masses and inertias
   double duration = 0;           // ps; 0: until all drives have ended
   double frames_every = 0;       // ps; 0: 40 frames
   double log_every = 0;          // ps; 0: 400 rows
@@ -85,7 +85,7 @@ struct Scene {
   std::string path;
   std::string text;                 // the file as read, for the copy in the run directory
   std::string hash;                 // xxh64 of text, hex
-  std::vector<ParameterSet> sets;   // of the tube types; never empty
+  std::vector<ParameterSet> sets;   // sets of the tube types; never empty
   std::vector<int> tube_types;      // of each tube, an index of `sets`; empty: all are of the first, or drawn:
   std::vector<double> type_shares;  // of each set, the part of the tubes that are of it; empty: tube_types holds
   double element_length = 0;        // nm
@@ -121,7 +121,7 @@ struct Scene {
   bool has_ends(Drive::Ends ends) const {
     return std::any_of(drives.begin(), drives.end(), [&](const auto& drive) { return drive->ends() == ends; });
   }
-  // Of all drives.
+  // Files that any drive reads.
   std::vector<std::string> files_of_drives() const {
     std::vector<std::string> all;
     for (const auto& drive : drives)

@@ -5,7 +5,7 @@
 
 namespace ropewalk {
 
-// In the order of help and templates.
+// All tables of a scene, in the order of help and templates.
 std::vector<SceneTable> scene_tables();
 // The keys of all tables.
 std::vector<SceneKey> scene_keys();

@@ -127,7 +127,8 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference
-  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces(), ""};
+  EvaluatedState out{scene.sets, build(scene), Interaction(), Forces(), {}, ""};
+  out.broken = scene.memory.broken;
   for (std::size_t type = 0; scene.bond.anharmonic && s.free_length > 0 && type < scene.sets.size(); ++type)
     out.built.topology.types[type].bond = scene.sets[type].anharmonic_bond(s.free_length);
   if (!(s.free_length > 0)) out.note = note_of_collapse(scene.sets, out.built.topology, out.built.state);

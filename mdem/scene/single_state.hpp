@@ -21,7 +21,7 @@ struct SingleState {
   bool legacy_torque = false;
   double exclude_along_tube = 0;  // nm; 0: as a scene has it
   double free_length = 0;         // nm, between what holds the tubes: they collapse by it; 0: the whole length
-  bool reference = false;         // by the plain path over all pairs
+  bool reference = false;         // energies by the plain path over all pairs
 };
 
 struct EvaluatedState {
@@ -29,6 +29,7 @@ struct EvaluatedState {
   BuiltScene built;
   Interaction interaction;
   Forces forces;
+  std::vector<int> broken;  // elements behind which tubes have broken
   std::string note;  // what the energy depends on and a state does not say; may be empty
 };
 // Throws InputError, which names the options of `ropewalk energy`.

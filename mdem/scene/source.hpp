@@ -42,8 +42,6 @@ class Source {
   virtual std::string file() const { return ""; }
   // The internal state of force terms and the broken bonds that the file stores.
   virtual StateMemory memory() const { return {}; }
-  // The key that LAMMPS cannot carry; empty: it can.
-  virtual std::string not_for_lammps() const { return ""; }
   // Describes the placed elements to the user.
   virtual std::string description(const Topology&, const State&, double /*spacing*/) const { return ""; }
 };

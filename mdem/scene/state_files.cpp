@@ -115,7 +115,8 @@ std::vector<std::string> forgotten(const StateMemory& memory, const Interaction&
   const std::string file = file_name(memory.state_path);
   std::set<std::string> here;
   for (const auto& term : in.terms)
-    if (here.insert(term->name()).second && term->remembers() && !memory.has(term->name()))
+    if (here.insert(term->name()).second && term->remembers() && term->name() != broken_tubes &&
+        !memory.has(term->name()))
       out.push_back(fmt::format("The {} of the scene begins anew: {} has no memory of it.", term->name(), file));
   for (const std::string& name : memory.names)
     if (here.count(name) == 0)

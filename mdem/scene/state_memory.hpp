@@ -24,11 +24,11 @@ std::string state_memory_text(const std::vector<NamedMemory>& memories, const st
 // What a state file says of it.
 struct StateMemory {
   std::string state_path, path;    // path: of the memory; empty: the header names none
-  std::vector<std::string> names;  // of the terms, by the header
+  std::vector<std::string> names;  // names of the terms in the header
   bool missing = false;            // the file that the header names
   std::vector<NamedMemory> terms;
   std::vector<int> broken;    // elements behind which tubes have broken
-  std::uint64_t lineage = 0;  // of the rows
+  std::uint64_t lineage = 0;  // lineage of the rows
 
   bool has(const std::string& term) const;
 };

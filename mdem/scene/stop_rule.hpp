@@ -10,7 +10,7 @@ namespace ropewalk {
 struct StopRule {
   enum class When { above, below, steady, growth, limit, shape };
   When when = When::above;
-  std::string column;  // of the log
+  std::string column;  // column of the log
   double value = 0;    // above, below: in the column's unit; steady: the largest change; growth: the relative error
   double over = 20;    // ps, of the last rows that steady and growth look at
   double from = 0;     // ps, before which the rule does not look

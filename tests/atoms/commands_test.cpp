@@ -130,6 +130,42 @@ TEST_F(Bridge, PartsOfARunAreWrittenAlone) {
   EXPECT_EQ(table.substr(0, table.find('\n')), "tube,element,first_atom,last_atom");
 }
 
+// Every atom is where its own element is, though the parts of a tube are far apart.
+TEST_F(Bridge, NoAtomStandsBetweenThePartsOfABrokenTube) {
+  spit(dir / "torn.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[chain]\nelements = 9\n[[grip]]\nend = "
+       "\"lower\"\n[[grip]]\nend = \"upper\"\nz = { displacement_nm = 3, rate_nm_per_ps = 1 }\n[failure]\nstrain = "
+       "0.05\n[run]\nframes_every_ps = 1\n");
+  const Outcome made = run("run torn.toml --out torn --threads 1 --quiet");
+  ASSERT_EQ(made.code, 0) << made.err;
+  const auto farthest = [&](const std::string& arguments) {
+    const Outcome o = run("atoms " + arguments + " -o torn.data --force");
+    EXPECT_EQ(o.code, 0) << o.err;
+    AtomFiles files({(dir / "torn.data").string()}, 1);
+    AtomFrame frame;
+    files.next(frame);
+    const State elements = state("torn/final.csv");
+    std::istringstream table(slurp(dir / "torn-elements.csv"));
+    std::string row;
+    std::getline(table, row);
+    double most = 0;
+    while (std::getline(table, row)) {
+      int tube = 0, element = 0;
+      long first = 0, last = 0;
+      std::sscanf(row.c_str(), "%d,%d,%ld,%ld", &tube, &element, &first, &last);
+      for (long k = first - 1; k < last; ++k)
+        most = std::max(most, (frame.positions[static_cast<std::size_t>(k)] -
+                               elements.position[static_cast<std::size_t>(element)])
+                                  .norm());
+    }
+    return most;
+  };
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  const double corner = std::hypot(set.radius, 0.5 * set.element_length);
+  EXPECT_NEAR(farthest("torn"), corner, 0.1);
+  EXPECT_NEAR(farthest("torn/final.csv --parameters cnt-5-5-tersoff"), corner, 0.1);
+}
+
 // Frames are 1 ps apart, and the limit is passed between two of them.
 TEST_F(Bridge, ARunIsSteppedAgainToItsLimit) {
   spit(dir / "rope.toml", std::string(twisted_rope) + "[limits]\nwall_twist = 0.007\n");

@@ -84,6 +84,8 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"check d --accuracy --stretch 0", "--stretch: 0 must be positive"},
+        std::pair{"bench rope-91x50 --parts 4", "--parts: is no option any more: export the scene"},
+        std::pair{"bench --plain", "--plain: is no option any more"},
         std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
     const Outcome o = run(line);
@@ -520,9 +522,6 @@ TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   const Outcome turned = run("export r.toml --lammps there");
   EXPECT_EQ(turned.code, 2);
   EXPECT_NE(turned.err.find("run.integrator: is not for LAMMPS"), std::string::npos) << turned.err;
-  small_rope("t.toml", "[contact]\nlaw = \"none\"\n[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n");
-  EXPECT_NE(run("export t.toml --lammps there").err.find("thermostat (without contact): is not for LAMMPS"),
-            std::string::npos);
   EXPECT_FALSE(fs::exists(dir / "there"));
 }
 

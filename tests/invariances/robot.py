@@ -4,11 +4,13 @@
     tests/invariances/robot.py ROPEWALK                a tenth of all pairs of scene and transformation, seeds fixed
     tests/invariances/robot.py ROPEWALK --all          all pairs, with random numbers of the day
     tests/invariances/robot.py ROPEWALK --all --seed 20260101 --scene rope --transformation mirror
+    tests/invariances/robot.py ROPEWALK --all --seed 20260101 --in FOLDER    again, it goes on where it was cut off
 
 The tenth is that of the number in .ci/turn, or of --tenth. Ends with 1 where something was found.
 docs/how-to/invariance.md says how to add a transformation.
 """
 import argparse
+import csv
 import datetime
 import importlib
 import pathlib
@@ -34,7 +36,7 @@ def arguments():
     parser.add_argument("--seed", help="of all random numbers [default: 1]")
     parser.add_argument("--scene", default="", help="only scenes with this in their names")
     parser.add_argument("--transformation", default="", help="only transformations with this in their names")
-    parser.add_argument("--in", dest="folder", help="work in this folder and keep it")
+    parser.add_argument("--in", dest="folder", help="work in this folder and keep it; verdicts are in its results.csv, and pairs that stand there are not run again")
     parser.add_argument("--list", action="store_true", help="list the transformations")
     return parser.parse_args()
 
@@ -51,6 +53,14 @@ def judge(bench, kind, name, seed):
         place = traceback.extract_tb(e.__traceback__)[-1]
         return "found", f"{type(e).__name__}: {e} ({place.name}, line {place.lineno})"
     return "held", ""
+
+
+def read_results(path, seed):
+    """Verdicts of an earlier call with this seed, by scene and transformation."""
+    if not path.exists():
+        return {}
+    with path.open(newline="") as file:
+        return {(row[1], row[2]): (row[3], row[4]) for row in csv.reader(file) if len(row) == 5 and row[0] == seed}
 
 
 def print_matrix(results, kinds, names):
@@ -95,11 +105,16 @@ def main():
         pairs = [(kind, name) for kind in kinds for name in names
                  if a.all or (3 * place[kind] + order[name]) % 10 == tenth]
         print(f"{len(pairs)} pairs, seed {seed}" + ("" if a.all else f", tenth {tenth}"), flush=True)
+        kept = read_results(folder / "results.csv", str(seed))
         results = {}
-        for kind, name in pairs:
-            results[kind, name] = verdict, words = judge(bench, kind, name, seed)
-            if verdict == "found":
-                print(f"found: {kind}, {name}: {words}", flush=True)
+        with (folder / "results.csv").open("a", newline="") as file:
+            for kind, name in pairs:
+                results[kind, name] = verdict, words = kept.get((kind, name)) or judge(bench, kind, name, seed)
+                if (kind, name) not in kept:
+                    csv.writer(file).writerow([seed, kind, name, verdict, " ".join(words.split())])
+                    file.flush()
+                if verdict == "found":
+                    print(f"found: {kind}, {name}: {words}", flush=True)
     finally:
         if not a.folder:
             shutil.rmtree(folder, ignore_errors=True)

@@ -1,4 +1,7 @@
 // Every error is one line that says what to write instead.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <sstream>
 
@@ -111,7 +114,7 @@ TEST_F(LammpsErrors, ShortGhostCutoffIsRefused) {
       script.replace(at, what.size(), by);
     ASSERT_GT(found, 0U) << what;
   };
-  replace_all("pair_style zero 2.034", "pair_style zero 0.5");
+  replace_all("pair_style mdem/none ${dir} ${forces}", "pair_style zero 0.5 nocoeff");
   replace_all("vel yes cutoff 2.184", "vel yes cutoff 0.6");
   spit(dir / "out/in.rope", script);
   for (const int ranks : {1, 2}) {
@@ -161,6 +164,58 @@ TEST_F(LammpsErrors, ExportAndImportRefuse) {
   EXPECT_TRUE(fs::exists(dir / "out/checkpoint.bin"));
   spit(dir / "out/lammps.json", "{");
   expect("import out", "lammps");
+}
+
+// What links remember stands behind the elements of a state.
+TEST_F(LammpsErrors, ADamagedMemoryIsOneLine) {
+  exported(
+      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
+      "[[links]]\nper_nm = 0.5\nstiffness_nN_per_nm = 10\nbreaks_at_nN = 1\n[run]\nduration_ps = 1\n",
+      "out");
+  const std::string good = slurp(dir / "out/rope.state");
+  const StateInFile state = find_states((dir / "out/rope.state").string(), 70).back();
+  ASSERT_GT(state.header.memory, 100);
+  const auto number_at = [&](std::int64_t number, double value) {
+    std::string bad = good;
+    std::memcpy(&bad[static_cast<std::size_t>(state.record(70) + 8 * number)], &value, sizeof value);
+    return bad;
+  };
+  // The first record is the account: its count of numbers, its element, and a number of the one behind it.
+  const std::vector<std::pair<std::string, std::string>> mistakes = {
+      {number_at(2, 1e9), "the memory of a force term is damaged"},
+      {number_at(2, 3), "the memory of"},
+      {number_at(1, 1e6), "the memory of a force term is damaged"},
+      {number_at(1, -7), "the memory of a force term is damaged"},
+      {number_at(12, std::nan("")), "the memory of a force term is damaged"},
+      {number_at(0, 5), "the memory of the force terms is damaged"}};
+  for (const auto& [bytes, message] : mistakes) {
+    spit(dir / "out/rope.state", bytes);
+    for (const int ranks : {1, 3}) {
+      SCOPED_TRACE(message + " on " + std::to_string(ranks));
+      const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 5");
+      EXPECT_NE(o.code, 0);
+      const std::size_t at = o.out.find("ERROR");
+      ASSERT_NE(at, std::string::npos) << o.out << o.err;
+      EXPECT_NE(o.out.substr(at, o.out.find('\n', at) - at).find(message), std::string::npos) << o.out.substr(at);
+    }
+  }
+  spit(dir / "out/rope.state", good);
+  ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 5 -var every 5").code, 0);
+  // A link of a later state that joins an element which is not there.
+  const StateInFile last = find_states((dir / "out/lammps.states").string(), 70).back();
+  std::string states = slurp(dir / "out/lammps.states");
+  const std::size_t count = static_cast<std::size_t>(last.header.memory);
+  std::vector<double> memory(count);
+  std::memcpy(memory.data(), &states[static_cast<std::size_t>(last.record(70))], 8 * count);
+  const std::size_t link = static_cast<std::size_t>(
+      std::find(memory.begin(), memory.end(), 17.0) - memory.begin());  // as many numbers as a link has
+  ASSERT_LT(link, count);
+  memory[link + 1] = 1e6;
+  std::memcpy(&states[static_cast<std::size_t>(last.record(70))], memory.data(), 8 * count);
+  spit(dir / "out/lammps.states", states);
+  const Outcome o = run("import out");
+  EXPECT_EQ(o.code, 2);
+  EXPECT_NE(o.err.find("the memory of links is damaged"), std::string::npos) << o.err;
 }
 
 // All that LAMMPS would obey, in a name.

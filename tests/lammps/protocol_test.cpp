@@ -68,7 +68,14 @@ const std::vector<Protocol>& protocols() {
        1e-9},
       {"NoContact",
        "[start]\ntemperature_K = 100\nmay_cool = true\n[contact]\nlaw = \"none\"\n"
-       "[[load]]\nkind = \"fix\"\nelements = [0]\n"}};
+       "[[load]]\nkind = \"fix\"\nelements = [0]\n"},
+      // A bath and a tether without contact, which both act through the engine.
+      {"BathWithoutContact",
+       "[contact]\nlaw = \"none\"\n[start]\ntemperature_K = 200\n[thermostat]\ntemperature_K = 300\n"
+       "coupling_per_ps = 2\nseed = 5\n[damping]\nbond_damping_per_ps = 0\n"
+       "[[tether]]\ntube = 1\nelements = [0]\nto_tube = 4\nto_elements = [-1]\nstiffness_nN_per_nm = 0.2\n"
+       "rest_nm = 10\n[[load]]\nkind = \"fix\"\nelements = [0]\n",
+       1e-9}};
   return all;
 }
 
@@ -109,7 +116,7 @@ TEST_F(ProtocolTest, HundredStepsAgree) {
       EXPECT_NEAR(row.dissipated, native.dissipated(), p.tolerance * std::fmax(1, native.dissipated()));
       EXPECT_NEAR(row.heat, native.heat(), p.tolerance * std::fmax(1, native.heat()));
       EXPECT_GT(std::fabs(native.work()) + std::fabs(native.dissipated()), 1e-3);
-      if (p.name == std::string("Thermostat")) {
+      if (p.name == std::string("Thermostat") || p.name == std::string("BathWithoutContact")) {
         EXPECT_GT(std::fabs(native.heat()), 1);
       }
     }
@@ -257,6 +264,149 @@ TEST_F(LammpsRun, FrictionSlidesAsHere) {
   }
 }
 
+// Tubes that begin apart: they meet between two lists, on ranks as here, also where both elements are copies of others.
+TEST_F(LammpsRun, FrictionBeginsWhereTubesMeet) {
+  constexpr int steps = 30;
+  const std::string scene_text =
+      line_scene("double", "[rope]\ntubes = 19\nlength_nm = 20\nspacing_nm = 1.81\nperturbation_nm = 0.01\n",
+                 "[[friction]]\nstrength_pN_per_nm = 20\nspin_strength_pN_per_nm = 30\nelastic_slip_nm = 0.005\n"
+                 "[[load]]\nkind = \"force\"\ntubes = [0]\nelements = \"all\"\nforce_nN = [0, 0, 0.4]\n"
+                 "[start]\ntemperature_K = 100\nmay_cool = true\n[limits]\npress_nm = 0.2\n");
+  expect_equal_steps(scene_text, steps, 1e-9);
+  Scene scene = read_scene((dir / "scene.toml").string());
+  Simulation native = start(scene, prepare(scene));
+  native.step();
+  EXPECT_EQ(native.forces().term_energy.at(0), 0) << "no tubes have met";
+  native.steps(steps - 1);
+  EXPECT_EQ(native.list().builds(), 0) << "they met between two lists";
+  const double energy = native.forces().term_energy.at(0);
+  EXPECT_GT(energy, 1e-3);
+  for (const int n : {1, 2, 4}) {
+    const std::string out = (dir / ("out-" + std::to_string(n))).string();
+    EXPECT_NEAR(read_lammps_rows(LammpsDirectory{out}, 1).back().terms.at(0), energy, 1e-8 * energy) << n;
+  }
+}
+
+// What has happened in a run, as its events.csv has it: times apart, which are sums of steps here and products there.
+struct Happened {
+  std::vector<double> times;
+  std::string what;
+};
+Happened happened(const std::string& events) {
+  Happened all;
+  std::istringstream lines(events);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t comma = line.find(','), places = line.find(',', line.find(',', comma + 1) + 1);
+    if (line.rfind("time", 0) == 0) continue;
+    all.times.push_back(std::stod(line));
+    std::size_t end = comma;  // behind event, tube, element, to_tube and to_element
+    for (int k = 0; k < 5; ++k) end = line.find(',', end + 1);
+    EXPECT_NE(places, std::string::npos);
+    all.what += line.substr(comma, end - comma) + "\n";
+  }
+  return all;
+}
+
+class LammpsEvents : public LammpsRun {
+ protected:
+  // 200 steps here and on each number of ranks, then there and back: the same motion, account, columns and events in
+  // one order. Half of the steps, cut off and gone on with, give no event twice. `least`: of each.
+  void expect_equal_events(const std::string& scene_text, const std::vector<std::pair<std::string, int>>& least,
+                           const std::function<void()>& edit_script = {}) {
+    constexpr int steps = 200;
+    constexpr double tolerance = 1e-10;
+    exported(scene_text, "out");
+    if (edit_script) edit_script();
+    ASSERT_EQ(run("run scene.toml --out here --quiet --steps " + std::to_string(steps)).code, 0);
+    const Happened here = happened(slurp(dir / "here/events.csv"));
+    for (const auto& [what, count] : least) {
+      int found = 0;
+      for (std::size_t at = 0; (at = here.what.find(what, at)) != std::string::npos; ++at) ++found;
+      EXPECT_GE(found, count) << what << "\n" << here.what;
+    }
+    const LogRow row_here = read_log((dir / "here/log.csv").string()).back();
+    Scene scene = read_scene((dir / "scene.toml").string());
+    Simulation native = start(scene, prepare(scene));
+    native.steps(steps);
+    for (const int n : {1, 2, 4, 7}) {
+      SCOPED_TRACE(n);
+      const std::string there = copied("out", "out-" + std::to_string(n));
+      Outcome o = lmp(n, there, "-in in.rope -var steps 100 -var every 50");
+      ASSERT_EQ(o.code, 0) << o.out << o.err;
+      // Killed in the middle of a state.
+      const fs::path states = dir / there / "lammps.states";
+      fs::resize_file(states, fs::file_size(states) - 100);
+      o = lmp(n, there, "-in in.rope -var steps 200 -var every 50 -var from lammps.states");
+      ASSERT_EQ(o.code, 0) << o.out << o.err;
+      const Left left = left_by(dir / there, native.topology());
+      ASSERT_EQ(left.state.step, steps);
+      EXPECT_LT(relative_difference(native.state().position, left.state.position), tolerance);
+      EXPECT_LT(relative_difference(native.state().velocity, left.state.velocity), tolerance);
+      o = run("import " + there + (edit_script ? " --accept-changes" : ""));
+      ASSERT_EQ(o.code, 0) << o.out << o.err;
+      const Happened found = happened(slurp(dir / there / "events.csv"));
+      EXPECT_EQ(found.what, here.what);
+      ASSERT_EQ(found.times.size(), here.times.size());
+      for (std::size_t k = 0; k < found.times.size(); ++k) EXPECT_NEAR(found.times[k], here.times[k], 1e-9);
+      const LogRow row = read_log((dir / there / "log.csv").string()).back();
+      for (const Observable& c : observables()) {
+        const double a = row_here[c.name], b = row[c.name];
+        // LAMMPS does not tell the work of the ends apart, and has no means of their forces.
+        const auto begins = [&](const char* word) { return c.name.rfind(word, 0) == 0; };
+        if (begins("work_upper") || begins("work_lower") || begins("torque_") || begins("tension_") ||
+            c.name.find("stress_") != std::string::npos)
+          continue;
+        ASSERT_EQ(std::isnan(a), std::isnan(b)) << c.name;
+        if (std::isnan(a)) continue;
+        EXPECT_NEAR(a, b, 1e-8 * std::fmax(1, std::fabs(a))) << c.name;
+      }
+      ASSERT_EQ(run("resume " + there + " --quiet --steps 230").code, 0);
+      EXPECT_EQ(happened(slurp(dir / there / "events.csv")).what.rfind(here.what, 0), 0U) << "they go on behind these";
+    }
+  }
+};
+
+// In heat, on elements that are shorter than a tube is wide, so that bonds look at their neighbours, across ranks too.
+TEST_F(LammpsEvents, TubesBreakAsHere) {
+  expect_equal_events(line_scene("double", "element_length_nm = 0.678\n[rope]\ntubes = 7\nlength_nm = 40\n",
+                                 "[failure]\nstrain = 0.02\nstrain_deviation = 0.004\n"
+                                 "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n"
+                                 "z = { displacement_nm = [[0, 0], [2, 0.8]] }\nsmooth_ps = 0\n"
+                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
+                      {{"tube broke", 5}});
+}
+
+std::string linked_scene(const std::string& links) {
+  return line_scene("double", "[rope]\ntubes = 7\nlength_nm = 60\ntube_length_nm = 20\nperturbation_nm = 0.01\n",
+                    "[[links]]\nstiffness_nN_per_nm = 10\nshear_stiffness_nN_per_nm = 5\n" + links +
+                        "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { force_nN = 5 }\n"
+                        "[start]\ntemperature_K = 300\nmay_cool = true\n");
+}
+
+TEST_F(LammpsEvents, LinksOfTheStartBreakAsHere) {
+  expect_equal_events(linked_scene("per_nm = 0.4\nbreaks_at_eV = 0.01\n"), {{"link formed", 200}, {"link broke", 10}});
+}
+
+// Placed on the way, at ends too, and then formed all the time, as long as elements have room for them.
+TEST_F(LammpsEvents, LinksFormAndBreakAsHere) {
+  expect_equal_events(linked_scene("per_nm = 0.2\nat_ends = 1\nplaced_at_ps = 0.5\nforming_per_nm_ps = 0.3\n"
+                                   "most_per_nm = 0.6\nbreaks_at_nN = 0.04\n"),
+                      {{"link formed", 200}, {"link broke", 10}});
+}
+
+// A film in a bath that is divided among the ranks anew every 20 steps: all that terms remember goes along.
+TEST_F(LammpsEvents, MemoriesGoWithTheElementsOfAFilm) {
+  expect_equal_events(
+      line_scene("double", "[film]\ntubes = 12\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
+                 "[[friction]]\nstrength_pN_per_nm = 20\nelastic_slip_nm = 0.005\n"
+                 "[[links]]\nper_nm = 1\nstiffness_nN_per_nm = 10\nbreaks_at_nN = 0.3\nforming_per_nm_ps = 0.5\n"
+                 "most_per_nm = 2\n[failure]\nmoment_nN_nm = 3\n[start]\ntemperature_K = 300\n"
+                 "[thermostat]\ntemperature_K = 300\ncoupling_per_ps = 1\n"
+                 "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n"),
+      {{"link formed", 20}, {"link broke", 5}, {"tube broke", 1}},
+      [&] { edit("out", "fix even all balance 1000", "fix even all balance 20"); });
+}
+
 TEST_F(LammpsRun, AFilmIsCutAndBalancedAgainAndAgain) {
   expect_equal_steps(line_scene("double", "[film]\ntubes = 8\nwidth_nm = 40\ndepth_nm = 40\nlength_nm = 40\n",
                                 "[start]\ntemperature_K = 300\nmay_cool = true\n"),
@@ -398,16 +548,22 @@ TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
   }
 }
 
-// LAMMPS's own restart files, also one for each rank.
-TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
-  exported(rope(warm_twist), "out");
+// LAMMPS's own restart files, also one for each rank; with links that break, which elements take along.
+class LammpsRestart : public LammpsRun, public ::testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(AndLinks, LammpsRestart, ::testing::Bool());
+TEST_P(LammpsRestart, FilesGoOnOnAnyNumberOfRanks) {
+  const std::size_t terms = GetParam() ? 1 : 0;
+  exported(GetParam() ? linked_scene("per_nm = 0.4\nbreaks_at_eV = 0.01\n") : rope(warm_twist), "out");
   Scene scene = read_scene((dir / "scene.toml").string());
   const Topology topology = prepare(scene).topology;
   const LammpsDirectory files{(dir / "out").string()};
   edit("out", "run ${last} upto\n", "restart 60 restart.*.%\nrun ${last} upto\n");
   ASSERT_EQ(lmp(2, "out", "-in in.rope -var steps 120").code, 0);
   const Left whole = left_by(dir / "out", topology);
-  const LammpsRow row = read_lammps_rows(files).back();
+  const LammpsRow row = read_lammps_rows(files, terms).back();
+  if (GetParam()) {
+    EXPECT_GT(row.accounts[0].events, 5);
+  }
   std::string script = slurp(dir / "out/in.rope");
   const std::size_t region = script.find("region box"), elements = script.find("fix elements");
   script.replace(region, elements - region, "read_restart restart.60.%\n");
@@ -419,7 +575,13 @@ TEST_F(LammpsRun, RestartFilesGoOnOnAnyNumberOfRanks) {
     const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 120");
     ASSERT_EQ(o.code, 0) << o.out << o.err;
     expect_same_run(whole, left_by(dir / "out", topology), 1e-12);
-    expect_same_account(row, read_lammps_rows(files).back());
+    const LammpsRow again = read_lammps_rows(files, terms).back();
+    expect_same_account(row, again);
+    for (std::size_t k = 0; k < terms; ++k) {
+      EXPECT_NEAR(again.terms[k], row.terms[k], 1e-10 * row.terms[k]);
+      EXPECT_EQ(again.accounts[k].events, row.accounts[k].events);
+      EXPECT_EQ(again.accounts[k].begun, row.accounts[k].begun);
+    }
   }
 }
 
@@ -441,10 +603,36 @@ TEST_F(LammpsRun, PluginDoesTheSame) {
   fs::remove(dir / "out/lammps.states");
   const Outcome o = lmp(1, "out", "'" ROPEWALK_LMP_PLUGIN "' -in in.rope -var steps 50", ROPEWALK_LMP_HOST);
   ASSERT_EQ(o.code, 0) << o.out << o.err;
-  for (const char* style : {"pair mdem/paper", "pair mdem/line", "bond mdem/vbond", "fix mdem/nve",
+  for (const char* style : {"pair mdem/paper", "pair mdem/line", "pair mdem/none", "bond mdem/vbond", "fix mdem/nve",
                             "fix mdem/relax", "fix mdem/damp", "fix mdem/grip", "fix mdem/states"})
     EXPECT_NE(o.out.find(std::string("plugin: ") + style + " for LAMMPS"), std::string::npos) << o.out;
   EXPECT_EQ(relative_difference(ours.state.position, left_by(dir / "out", topology).state.position), 0);
+}
+
+// Each rank has 20 nm of a rope whose tubes rub, and one or two neighbours.
+TEST_F(LammpsRun, ARankSendsNoMoreWhereThereAreMoreOfThem) {
+  std::map<int, long long> largest;
+  for (const int ranks : {2, 4, 8}) {
+    exported(line_scene("mixed", "[rope]\ntubes = 19\nlength_nm = " + std::to_string(20 * ranks) + "\n",
+                        "[[friction]]\nstrength_pN_per_nm = 20\nelastic_slip_nm = 0.005\n"
+                        "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\nbond_damping_per_ps = 0\n"
+                        "[start]\ntemperature_K = 300\nmay_cool = true\n"),
+             "out");
+    const Outcome o = lmp(ranks, "out", "'" ROPEWALK_LMP_PLUGIN "' -in in.rope -var steps 100 -var every 20",
+                          ROPEWALK_LMP_HOST);
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    int told = 0;
+    for (std::size_t at = 0; (at = o.out.find(" bytes\n", at)) != std::string::npos; ++at, ++told) {
+      const std::size_t number = o.out.rfind(": ", at) + 2;
+      largest[ranks] = std::max(largest[ranks], std::stoll(o.out.substr(number, at - number)));
+    }
+    ASSERT_EQ(told, ranks);
+    const LammpsRow row = read_lammps_rows(LammpsDirectory{(dir / "out").string()}, 1).back();
+    EXPECT_GT(row.terms[0], 0.1) << "contacts remember slips";
+  }
+  EXPECT_LT(largest[4], 2.1 * static_cast<double>(largest[2]));
+  EXPECT_LT(largest[8], 1.05 * static_cast<double>(largest[4]));
+  RecordProperty("bytes", std::to_string(largest[2]) + " " + std::to_string(largest[4]) + " " + std::to_string(largest[8]));
 }
 
 // --- there and back -----------------------------------------------------------------------------------
@@ -537,18 +725,22 @@ TEST_F(LammpsRun, ImportLooksForLimits) {
   EXPECT_GE(passed, 1);
 }
 
-// As `run` does there, by going back and halving them.
-TEST_F(LammpsRun, ImportSaysThatStepsWereTooLong) {
+// Where `run` goes back and halves them. What was written before is taken over.
+TEST_F(LammpsRun, StopsWhereStepsAreTooLong) {
   spit(dir / "scene.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.8\n"
        "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [1, 60]] }\n"
        "smooth_ps = 0\n[run]\nduration_ps = 12\nframes_every_ps = 1\n");
   ASSERT_EQ(run("export scene.toml --lammps there").code, 0);
-  ASSERT_EQ(lmp(1, "there", "-in in.rope").code, 0);
-  const Outcome o = run("import there");
+  Outcome o = lmp(2, "there", "-in in.rope -var every 60");
+  EXPECT_NE(o.code, 0);
+  EXPECT_NE(o.out.find("ERROR: step 128: the energy balance has not closed since step 0; `ropewalk run` would go back"),
+            std::string::npos)
+      << o.out << o.err;
+  o = run("import there");
   ASSERT_EQ(o.code, 0) << o.err;
-  EXPECT_NE(o.err.find("note: from step 0 to 1"), std::string::npos) << o.err;
-  EXPECT_NE(o.err.find("the energy balance does not close"), std::string::npos) << o.err;
+  EXPECT_NE(o.out.find("up to step 120"), std::string::npos) << o.out;
+  EXPECT_EQ(run("resume there --quiet --steps 200").code, 7) << "it goes on, far beyond limits";
 }
 
 // Of a killed run all whole states are taken.
@@ -562,6 +754,40 @@ TEST_F(LammpsRun, ImportLeavesOutWhatIsCutOff) {
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_NE(o.out.find("step 20"), std::string::npos) << o.out;
   ASSERT_EQ(run("resume out --steps 25 --quiet").code, 0);
+}
+
+// With stand-ins for srun and sbatch. The first job has no time for the scene, the second one ends it.
+TEST_F(LammpsRun, AJobWhoseTimeIsOverSubmitsTheNextOne) {
+  exported(line_scene("mixed", small_rope, hot_twist), "out");
+  const fs::path stand_ins = dir / "bin";
+  fs::create_directories(stand_ins);
+  fs::create_symlink(ROPEWALK_LMP, stand_ins / "lmp-ropewalk");
+  spit(stand_ins / "srun", "#!/bin/sh\nexec \"$@\"\n");
+  spit(stand_ins / "sbatch", "#!/bin/sh\necho \"submitted $1\"\n");
+  for (const char* name : {"srun", "sbatch"}) fs::permissions(stand_ins / name, fs::perms::owner_all);
+  const auto job = [&](int seconds, int steps) {
+    edit("out", "variable steps index", "variable steps index " + std::to_string(steps) + " # ");
+    const std::string command = "cd '" + (dir / "out").string() + "' && PATH='" + stand_ins.string() +
+                                "':$PATH OMP_NUM_THREADS=1 " + leaks_allowed + " SLURM_JOB_END_TIME=$(($(date +%s) + " +
+                                std::to_string(seconds) + ")) sh job.sh > out.txt 2>&1";
+    const int status = std::system(command.c_str());
+    return std::pair(WEXITSTATUS(status), slurp(dir / "out/out.txt"));
+  };
+  const auto [first, told] = job(2, 1000000);
+  EXPECT_EQ(first, 0) << told;
+  EXPECT_NE(told.find("submitted job.sh"), std::string::npos) << told;
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const int elements = prepare(scene).topology.elements();
+  const auto reached = [&] {
+    return find_states((dir / "out/lammps.states").string(), elements).back().header.step;
+  };
+  const std::int64_t after_first = reached();
+  EXPECT_GT(after_first, 0);
+  const auto [second, done] = job(1000, static_cast<int>(after_first) + 40);
+  EXPECT_EQ(second, 0) << done;
+  EXPECT_EQ(done.find("submitted"), std::string::npos) << done;
+  EXPECT_EQ(reached(), after_first + 40);
+  EXPECT_EQ(run("import out --accept-changes").code, 0);  // of the number of steps
 }
 
 TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {

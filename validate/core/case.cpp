@@ -127,11 +127,14 @@ CaseResult run_case(const Case& c, const CaseContext& context) {
 }
 
 bool like(const ParameterSet& i, const ParameterSet& j) {
+  if (i.filament || j.filament) return i.filament == j.filament && i.name == j.name;
   return i.chirality.n == j.chirality.n && i.chirality.m == j.chirality.m &&
          provenance_value(i, "potential_hash") == provenance_value(j, "potential_hash");
 }
 
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped) {
+  if (given.filament && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
+    throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
   if (c.law == Case::Law::line && !given.line) throw NotApplicable("the set has no contact law `line`");
   if (c.law == Case::Law::paper && !given.paper) throw NotApplicable("the set has no contact law `paper`");
   const auto is_like = [&](const ParameterSet& set) { return like(set, given); };

@@ -210,7 +210,7 @@ const std::vector<Case>& all_cases();
 
 // "(5,5) and (10,10)", the tubes of these sets; laws apart, each once.
 std::string tube_names(const std::vector<ParameterSet>& sets);
-// Whether two sets are of the same tube and the same interatomic potential.
+// Whether two sets are of the same tube and the same interatomic potential, or of the same filament.
 bool like(const ParameterSet& i, const ParameterSet& j);
 // Runs the case, names its sets among the sources and marks its known misses.
 CaseResult run_case(const Case& c, const CaseContext& context);

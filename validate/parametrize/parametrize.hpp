@@ -36,15 +36,15 @@ struct ParametrizedTube {
   std::string tube;   // "(7,3)"
   std::string error;  // why there is no set; empty otherwise
   ParameterSet set;
-  std::vector<PairFriction> frictions;  // of this tube and another one
+  std::vector<PairFriction> frictions;  // friction between this tube and another one
   std::string no_friction;              // why some are missing; empty: none is
   std::vector<Outcome> outcomes;
-  std::string tier = "full";       // of the cases
+  std::string tier = "full";       // cases that are run
   double calibration_seconds = 0;  // wall time
 
   bool holds() const;
   std::string verdict() const;        // "holds" or "misses", with "quick" where only these cases were run
-  std::string grade() const;          // in words, with the cases that miss
+  std::string grade() const;          // grade in words, with the cases that miss
   double validation_seconds() const;  // sum over the cases, LAMMPS included
 };
 

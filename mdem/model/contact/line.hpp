@@ -55,7 +55,7 @@ struct LineDensity {
   double switch_gap = 0.9;  // nm
   double cutoff_gap = 1.2;  // nm
 
-  double cutoff() const { return contact + cutoff_gap; }  // of rho
+  double cutoff() const { return contact + cutoff_gap; }  // cutoff of rho
   // Plain arithmetic, selections, exp and log only, so that a loop over pairs of nodes vectorises.
   inline __attribute__((always_inline)) RadialTerms terms(double rho) const {
     const double h = rho - contact, e = std::min(h - core_gap, 0.0);

@@ -39,7 +39,7 @@ struct LennardJones {
 // The atoms at the end of a tube.
 struct TubeEnd {
   double radius = 0;  // nm
-  int atoms = 0;      // of a circle
+  int atoms = 0;      // atoms on a circle
   double row = 0;     // h, nm
   double split = 0;   // b, nm
 };
@@ -61,7 +61,7 @@ class EndContact {
  public:
   EndContact(const LennardJones& law, const TubeEnd& i, const TubeEnd& j);
 
-  double reach() const { return reach_; }  // of the gap
+  double reach() const { return reach_; }  // largest gap with a force
   double rest() const { return rest_; }    // the gap of lowest energy
   double width() const { return width_; }  // r_i + r_j
   // eV/nm^2: the largest second derivative. It grows towards the core.
@@ -80,7 +80,7 @@ class EndContact {
  private:
   static constexpr double nearest = 0.1, spacing = 0.01;  // nm, of the table
   static constexpr double without_cutoff = 4;             // sigma
-  static constexpr int turns = 128;                       // of theta, in half a circle
+  static constexpr int turns = 128;                       // values of theta in half a circle
 
   static RadialTerms sum(const LennardJones& law, double reach, const TubeEnd& i, const TubeEnd& j, double gap);
   RadialTerms at(double gap) const;
@@ -137,7 +137,7 @@ inline RadialTerms EndContact::sum(const LennardJones& law, double reach, const 
         if (rho2 >= reach * reach) break;
         const double x2 = law.sigma * law.sigma / rho2, x6 = x2 * x2 * x2;
         const double v = 4 * law.epsilon * x6 * (x6 - 1);
-        // By rho^2.
+        // Derivative by rho^2.
         const double first = -4 * law.epsilon * x6 * (6 * x6 - 3) / rho2,
                      second = 4 * law.epsilon * x6 * (42 * x6 - 12) / (rho2 * rho2);
         out.energy += per_turn * v;

@@ -94,6 +94,13 @@ def _timed_reader(times: list[float]) -> Any:
     return TimedReader
 
 
+def _broken(of: Any, scene: Scene) -> list[int]:
+    """Elements behind which tubes have broken (no unit)."""
+    if isinstance(of, Frame):
+        return _core.broken_in_run(os.path.join(os.path.dirname(of._of._path), "events.csv"), scene._core, of.time_ps)
+    return _core.broken_now(of._core) if isinstance(of, Simulation) else _core.broken_at_start(scene._core)
+
+
 def atoms(
     of: Union[State, Scene, Simulation, Run, _Path],
     parameters: Union[SetName, Sequence[SetName], None] = None,
@@ -103,7 +110,8 @@ def atoms(
     from_nm: Optional[float] = None,
     to_nm: Optional[float] = None,
 ) -> Atoms:
-    """The atoms of elements, as `ropewalk atoms` writes them: positions in nm, and which element each one is of.
+    """The atoms of elements, as `ropewalk atoms` writes them: positions in nm, and which element each one is of. No atom
+    stands between the parts of a tube that has broken.
 
     Arguments:
         of: a run, whose last frame counts, a frame, a scene (its start), a simulation, a state, or a state file
@@ -124,7 +132,7 @@ def atoms(
     if scene is not None and parameters is None:
         assert isinstance(state, State)
         found = _core.atoms_in_scene(scene._core, real_array(state.flat.position, "position"),
-                                     real_array(state.flat.orientation, "orientation"), *wanted)
+                                     real_array(state.flat.orientation, "orientation"), _broken(of, scene), *wanted)
         return Atoms(*found, time)
     if parameters is None:
         raise TypeError("a state alone does not know its parameter set: give `parameters`")

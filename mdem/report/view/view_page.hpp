@@ -15,7 +15,7 @@ namespace ropewalk {
 struct ViewField {
   std::string name, unit, meaning;
   bool is_signed = false;                   // zero is the middle of its colours
-  std::vector<std::vector<double>> values;  // of each frame, of each element
+  std::vector<std::vector<double>> values;  // values of each frame, of each element
   std::vector<double> log_total;            // for each frame the sum in log.csv; NaN: it has none
 };
 
@@ -34,8 +34,8 @@ struct ViewLink {
 // A limit of the model that an element passed.
 struct ViewMark {
   std::string limit, held_by;  // key of the limit; "the upper clamp" where something holds the place
-  double time_ps = 0;          // from then on
-  int element = 0;             // of all
+  double time_ps = 0;          // time from which the limit is passed
+  int element = 0;             // element, counted over all tubes
 };
 
 struct ViewInput {

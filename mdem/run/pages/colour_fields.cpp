@@ -54,7 +54,7 @@ struct ColourField {
   ViewField field;
   std::vector<double> ElementColours::*values;
   double (*log_total)(const LogRow&);
-  double unit = 1;  // of the field, in that of `values`
+  double unit = 1;  // unit of the field, in that of `values`
 };
 
 std::vector<ColourField> colour_fields() {

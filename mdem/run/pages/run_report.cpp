@@ -10,6 +10,7 @@
 #include "io/frames/frames.hpp"
 #include "io/grade.hpp"
 #include "model/error.hpp"
+#include "model/yarn.hpp"
 #include "report/report.hpp"
 #include "run/events_file.hpp"
 #include "run/pages/run_views.hpp"

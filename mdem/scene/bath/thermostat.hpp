@@ -16,8 +16,9 @@ class ThermostatDrive : public Drive {
   bool is_random() const override { return options.temperature.largest() > 0; }
   void set_stepping(std::uint64_t lineage, Stepping& stepping) const override;
   const ThermostatOptions* thermostat() const override { return &options; }
-  std::string not_for_lammps() const override {
-    return make_thermostat(options)->acts_by_element() ? "" : "thermostat.method";
+  NotForLammps not_for_lammps() const override {
+    if (make_thermostat(options)->acts_by_element()) return {};
+    return {"thermostat.method", "this one needs the motion of all elements at once, and ranks have a part of them"};
   }
 };
 

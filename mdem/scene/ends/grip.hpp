@@ -72,9 +72,9 @@ class GripLoad : public Load {
   void add_up(std::vector<Body>& all, int count, const Of& numbers_of) const;
   bool solves() const;  // for components that nothing prescribes
 
-  std::array<Schedule, 6> schedules_;   // in nm, rad, eV/nm and eV
-  std::vector<double> mass_, inertia_;  // of the elements
-  std::vector<int> clamp_;              // of each element, in rising order
+  std::array<Schedule, 6> schedules_;   // courses in nm, rad, eV/nm and eV
+  std::vector<double> mass_, inertia_;  // masses and inertias of the elements
+  std::vector<int> clamp_;              // clamp of each element, in rising order
   // Clamps with elements on several processes, in rising order, the same on all of these.
   std::vector<int> shared_;
   const LoadProcesses* others_ = nullptr;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "model/error.hpp"
+#include "model/yarn.hpp"
 #include "scene/drive_kind.hpp"
 #include "scene/key_table.hpp"
 #include "scene/kinds/rope.hpp"
@@ -44,9 +45,6 @@ void read_tension(const TomlTable& t, const Scene&, PeriodicLoad& load) {
   for (Schedule::Point& p : load.tension) p.value *= units::nN_nm;
 }
 
-// Tangent of the angle of a yarn's surface, tan(beta) = pi d T.
-double slope(double turns, double diameter) { return units::pi * diameter * turns; }
-
 void check_turns(const TomlTable& t, const PeriodicLoad& load) {
   if (t.has("turns_per_m") == t.has("twist_deg_per_nm"))
     throw t.error("twist_deg_per_nm",
@@ -56,12 +54,12 @@ void check_turns(const TomlTable& t, const PeriodicLoad& load) {
   if (!(load.yarn_diameter > 0))
     throw t.error("yarn_diameter_um", "is missing", "turns_per_m needs it: the angle is that of a yarn so thick");
   for (const Schedule::Point& p : load.turns)
-    if (const double steep = std::fabs(slope(p.value, load.yarn_diameter)); steep > 1)
+    if (const double steep = std::fabs(yarn_slope(p.value, load.yarn_diameter)); steep > 1)
       throw t.error("turns_per_m",
                     fmt::format("lays the surface of the yarn at {:.3g} degrees to its axis",
                                 std::atan(steep) / units::degree),
                     fmt::format("at most 45 degrees, {:.4g} turns per metre, can be built",
-                                1 / slope(per_m, load.yarn_diameter)));
+                                1 / yarn_slope(per_m, load.yarn_diameter)));
 }
 
 void check_slice(const TomlTable& t, const Scene&, PeriodicLoad& load) {
@@ -157,7 +155,7 @@ std::string PeriodicDrive::words() const {
   else
     text += fmt::format(
         "to {:.4g} degrees at its surface in {:.4g} ps, as a yarn of {:.4g} um is by {:.4g} turns per metre",
-        std::atan(slope(load.turns.back().value, load.yarn_diameter)) / units::degree, load.turns.back().time,
+        std::atan(yarn_slope(load.turns.back().value, load.yarn_diameter)) / units::degree, load.turns.back().time,
         load.yarn_diameter / um, load.turns.back().value / per_m);
   if (!load.tension.empty()) {
     Schedule pull(load.tension);
@@ -300,7 +298,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, doub
   if (!turns.empty()) {
     ROPEWALK_EXPECTS(rim > 0);
     out.twist = turns;
-    for (Schedule::Point& p : out.twist) p.value = slope(p.value, yarn_diameter) / rim;
+    for (Schedule::Point& p : out.twist) p.value = yarn_slope(p.value, yarn_diameter) / rim;
   }
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;

@@ -92,8 +92,8 @@ class PeriodicLoad : public Load {
   void lead(const Topology&, const When&, const Length& then, State&) const;
   void follow(int image, int original, double sign, const When&, const Length& then, State&) const;
 
-  Schedule schedule_;            // of tau, smoothed
-  Schedule stretched_, pulled_;  // of strain, smoothed, and of tension
+  Schedule schedule_;            // course of tau, smoothed
+  Schedule stretched_, pulled_;  // courses of strain, smoothed, and of tension
   EndElements ends_;
   double period_ = 0, reach_ = 0;  // nm
 };
@@ -114,7 +114,11 @@ class PeriodicDrive : public Drive {
   void warn(const Scene&, const Topology&, const LoadsAndConstraints&, std::vector<std::string>&) const override;
   Ends ends() const override { return Ends::endless; }
   std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
-  std::string not_for_lammps() const override { return "periodic"; }
+  NotForLammps not_for_lammps() const override {
+    return {"periodic",
+            "the images of a slice follow elements a period away, which other ranks have; a rope of ten periods "
+            "between grips, whose middle is as a slice, takes ten times as long a step"};
+  }
 };
 
 }  // namespace ropewalk

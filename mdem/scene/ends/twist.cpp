@@ -263,7 +263,7 @@ void TwistLoad::constrain(const Topology& topology, double, double, State& state
   if (lateral_free && axial_free) return;
   Vector3 mean = Vector3::Zero();
   if (!lateral_free) {
-    std::array<double, 3> sums{};  // of mass and momentum
+    std::array<double, 3> sums{};  // sums of mass and momentum
     for (const int e : elements) {
       const double m = topology.type_of_element(e).mass;
       const Vector3 v = state.velocity[static_cast<std::size_t>(e)];

@@ -39,7 +39,7 @@ class TwistLoad : public Load {
   bool lateral_free = true;
   bool axial_free = true;
   double increment = 1.0;  // ps between relaxations of every spin, where the twist is geometric only
-  double sign = 1;         // of the moment: + on the upper grip, - on the lower
+  double sign = 1;         // sign of the moment: + on the upper grip, - on the lower
 
   double ramp_time() const { return rate > 0 ? moment / rate : 0.0; }                  // ps
   double unload_time() const { return unload_rate > 0 ? moment / unload_rate : 0.0; }  // ps
@@ -96,7 +96,10 @@ class TwistDrive : public Drive {
   }
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::loaded; }
-  std::string not_for_lammps() const override { return load.geometric_only ? "twist.geometric_only" : ""; }
+  NotForLammps not_for_lammps() const override {
+    if (!load.geometric_only) return {};
+    return {"twist.geometric_only", "all elements of a tube get their spin at once, and several ranks have them"};
+  }
 
  private:
   void refuse_in_relaxation(const TomlTable& top, const Scene&) const;

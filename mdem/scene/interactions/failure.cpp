@@ -35,12 +35,14 @@
 #include "scene/scene.hpp"
 #include "scene/spacing.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/state/part_of_scene.hpp"
 
 namespace ropewalk {
 namespace {
 
 constexpr double never_breaks = std::numeric_limits<double>::infinity();
 constexpr double no_bond = -1;                         // behind the last element of a tube
+constexpr double longest_bond = 1.5;                   // element lengths
 constexpr std::uint32_t strain_question = 0xFFFFFFFE;  // a last number of counters that nothing else takes
 
 // k, of a standard deviation of `share` of the mean.
@@ -59,7 +61,7 @@ struct FailureLaw {
   double moment = never_breaks;  // eV
   std::uint64_t seed = 1;
 
-  // Of the bond behind each element of such a tube.
+  // Strain limits of the bond behind each element of such a tube.
   std::function<double(int)> strains_of(const TubeType& type) const {
     const double length = type.element_length;
     if (from_atoms) return [end = end_of_stretch(type.bond.anharmonic)](int) { return end; };
@@ -77,22 +79,18 @@ struct FailureLaw {
 
 class TubeFailure : public ForceTerm {
  public:
-  TubeFailure(FailureLaw law, const Topology& scene) : law_(law), topology_(scene) {
-    limit_.resize(static_cast<std::size_t>(scene.elements()), 0);
-    for (int t = 0; t < scene.tubes(); ++t) {
-      limit_[static_cast<std::size_t>(scene.tube_begin[t + 1] - 1)] = no_bond;
-      const auto strain_of = law_.strains_of(scene.type_of(t));
-      for (int i = scene.tube_begin[t]; i + 1 < scene.tube_begin[t + 1]; ++i)
-        limit_[static_cast<std::size_t>(i)] = strain_of(scene.original_of(i));
-    }
-    broken_.assign(limit_.size(), 0);
-  }
+  TubeFailure(FailureLaw law, const Topology& scene) : law_(law), scene_(scene), here_(scene) { find_limits(); }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeFailure>(*this); }
   std::string name() const override { return "failure"; }
   const std::vector<char>* broken_bonds() const override { return all_.empty() ? nullptr : &broken_; }
 
   // Bonds that had broken before the start are where they are at the start.
   void prepare(const ListedScene& scene) override {
+    if (scene.topology.part) {
+      here_ = scene.topology;
+      find_limits();
+      mark_broken();
+    }
     for (const int element : all_) {
       const auto i = static_cast<std::size_t>(element);
       if (!placed_) tell(element, 0, 0.5 * (scene.state.position[i] + scene.state.position[i + 1]));
@@ -100,33 +98,43 @@ class TubeFailure : public ForceTerm {
     placed_ = true;
   }
 
+  // Each process has the bonds behind its own elements. Which of them break in one step depends on those that had
+  // broken before it, and on no order.
   StateUpdate advance(double, const State& state) override {
+    std::vector<std::pair<int, int>> breaking;  // tube and element
+    for (int t = 0; t < here_.tubes(); ++t)
+      for (int i = here_.tube_begin[t]; i < here_.tube_begin[t + 1]; ++i)
+        if (here_.owns(i) && !here_.is_image(i) && breaks(t, state, i)) breaking.emplace_back(t, i);
     StateUpdate now;
-    for (int t = 0; t < topology_.tubes(); ++t)
-      for (int i = topology_.tube_begin[t]; i + 1 < topology_.tube_begin[t + 1]; ++i)
-        if (!topology_.is_image(i) && breaks(t, state, i)) {
-          now.lost += break_at(topology_.type_of(t), state, i);
-          ++now.events;
-        }
+    for (const auto& [t, i] : breaking) now.lost += break_at(here_.type_of(t), state, i);
+    now.events = static_cast<long>(breaking.size());
+    now.news = now.events > 0;
     return now;
   }
 
+  bool remembers() const override { return true; }
   TermState memory() const override {
     TermState out;
-    for (const int element : all_) out.push_back({element, {}});
+    for (const int element : all_)
+      if (owns_number(here_, element)) out.push_back({element, {}});
     return out;
+  }
+  // A bond is judged by those about it.
+  double copy_reach() const override {
+    double reach = 0;
+    for (const TubeType& type : scene_.types) reach = std::max(reach, longest_bond * 2 * type.radius);
+    return reach;
   }
   void set_memory(const TermState& memory) override {
     placed_ = true;
     all_.clear();
     events_.clear();
-    broken_.assign(limit_.size(), 0);
     for (const TermRecord& r : memory) {
-      if (!r.numbers.empty() || limit_[static_cast<std::size_t>(r.element)] == no_bond)
+      if (!r.numbers.empty() || ends_tube(r.element))
         throw std::runtime_error("the memory of broken tubes is damaged");
       all_.push_back(r.element);
-      for (const int e : with_images(r.element)) broken_[static_cast<std::size_t>(e)] = 1;
     }
+    mark_broken();
   }
   void begin_with(const TermState& memory) override {
     set_memory(memory);
@@ -137,6 +145,25 @@ class TubeFailure : public ForceTerm {
   std::size_t bytes() const override { return limit_.size() * (sizeof(double) + 1); }
 
  private:
+  // Nothing is known of the bond behind a copy at the edge of what is here.
+  void find_limits() {
+    limit_.assign(static_cast<std::size_t>(here_.elements()), no_bond);
+    for (int t = 0; t < here_.tubes(); ++t) {
+      const auto strain_of = law_.strains_of(here_.type_of(t));
+      for (int i = here_.tube_begin[t]; i + 1 < here_.tube_begin[t + 1]; ++i)
+        limit_[static_cast<std::size_t>(i)] = strain_of(number_in_scene(here_, here_.original_of(i)));
+    }
+    broken_.assign(limit_.size(), 0);
+  }
+  void mark_broken() {
+    broken_.assign(limit_.size(), 0);
+    for (const int element : all_)
+      if (const int i = place_of(here_, element); i >= 0)
+        for (const int e : with_images(i)) broken_[static_cast<std::size_t>(e)] = 1;
+  }
+  bool ends_tube(int element) const {
+    return element + 1 == scene_.tube_begin[static_cast<std::size_t>(scene_.tube_of(element)) + 1];
+  }
   // By a hair before BondSum::slipping, so that no run ends for a bond that breaks.
   static bool slips(const Quaternion& from, const Quaternion& to) {
     const Quaternion turn = from.conjugate() * to;
@@ -144,9 +171,9 @@ class TubeFailure : public ForceTerm {
   }
   bool breaks(int tube, const State& state, int element) const {
     const auto i = static_cast<std::size_t>(element);
-    if (broken_[i]) return false;
+    if (broken_[i] || limit_[i] == no_bond) return false;
     if (slips(state.orientation[i], state.orientation[i + 1])) return true;
-    const TubeType& type = topology_.type_of(tube);
+    const TubeType& type = here_.type_of(tube);
     const auto [first, last] = about(tube, element);
     const int bonds = last - first + 1;
     const double length = bonds * type.element_length;
@@ -163,14 +190,14 @@ class TubeFailure : public ForceTerm {
   // The bonds about this one, by the elements before them, which are together about as long as the tube is wide.
   // None of them is broken.
   std::pair<int, int> about(int tube, int element) const {
-    const TubeType& type = topology_.type_of(tube);
+    const TubeType& type = here_.type_of(tube);
     const int bonds = std::max(1, static_cast<int>(std::lround(2 * type.radius / type.element_length)));
     int first = element, last = element;
     for (bool grows = true; grows && last - first + 1 < bonds;) {
       grows = false;
-      if (last + 2 < topology_.tube_begin[tube + 1] && !broken_[static_cast<std::size_t>(last + 1)])
+      if (last + 2 < here_.tube_begin[tube + 1] && !broken_[static_cast<std::size_t>(last + 1)])
         ++last, grows = true;
-      if (last - first + 1 < bonds && first > topology_.tube_begin[tube] &&
+      if (last - first + 1 < bonds && first > here_.tube_begin[tube] &&
           !broken_[static_cast<std::size_t>(first - 1)])
         --first, grows = true;
     }
@@ -182,8 +209,9 @@ class TubeFailure : public ForceTerm {
     const std::vector<int> bonds = with_images(element);
     for (const int e : bonds) broken_[static_cast<std::size_t>(e)] = 1;
     // In the order of the elements, as a memory comes back.
-    all_.insert(std::upper_bound(all_.begin(), all_.end(), element), element);
-    tell(element, state.time, state.position[i] + 0.5 * d);
+    const int in_scene = number_in_scene(here_, element);
+    all_.insert(std::upper_bound(all_.begin(), all_.end(), in_scene), in_scene);
+    tell(in_scene, state.time, state.position[i] + 0.5 * d);
     return static_cast<double>(bonds.size()) * bond_energy(type.bond, type.element_length, d,
                                                            frame_of(state.orientation[i]),
                                                            frame_of(state.orientation[i + 1]))
@@ -195,14 +223,14 @@ class TubeFailure : public ForceTerm {
   // The bond behind this element, and its images in a slice.
   std::vector<int> with_images(int element) const {
     std::vector<int> all = {element};
-    for (const int image : {topology_.image_below(element), topology_.image_above(element)})
+    for (const int image : {here_.image_below(element), here_.image_above(element)})
       if (image >= 0 && limit_[static_cast<std::size_t>(image)] != no_bond) all.push_back(image);
     return all;
   }
 
   FailureLaw law_;
-  Topology topology_;
-  std::vector<double> limit_;  // of strain, of the bond behind each element
+  Topology scene_, here_;      // here: what this process has of the scene
+  std::vector<double> limit_;  // strain limit of the bond behind each element here
   std::vector<char> broken_;   // likewise
   std::vector<int> all_;           // elements behind which a bond has broken, images left out
   std::vector<TermEvent> events_;  // that nobody has written yet
@@ -230,7 +258,6 @@ class FailureDrive : public Drive {
   }
   std::string why_not_split() const override { return "[failure] has limits of single bonds"; }
   std::string why_not_lengthened() const override { return ""; }
-  std::string not_for_lammps() const override { return "failure"; }
 };
 
 // A strain at which the bonds do not follow the atoms any more would make the strength up.

@@ -69,7 +69,6 @@ class LinksDrive : public Drive {
     return narrowed;
   }
   std::string why_not_split() const override { return between.empty() ? "" : "links name elements by number"; }
-  std::string not_for_lammps() const override { return "links"; }
 
  private:
   std::vector<LinkPlace> at_start(const Topology& topology, const State& state) const {

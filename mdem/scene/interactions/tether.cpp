@@ -29,7 +29,7 @@ constexpr int elsewhere = -1;
 // --- the term -----------------------------------------------------------------------------------------
 
 struct TetherEnd {
-  std::vector<int> elements;         // of the scene; none: a fixed point
+  std::vector<int> elements;         // elements of the scene; none: a fixed point
   Vector3 centre = Vector3::Zero();  // nm
   std::vector<int> own;              // the elements of this process, by their places in its state
 };
@@ -52,10 +52,17 @@ class Tether : public ForceTerm {
     const std::vector<int> first = own_places(scene.topology, {ends_[0].elements.front()});
     first_ = first.empty() ? elsewhere : first.front();
     const auto whole = [](const TetherEnd& end) { return end.own.size() == end.elements.size(); };
-    double in_one_process = whole(ends_[0]) && whole(ends_[1]) ? 1 : 0;
-    if (scene.others) scene.others->sum(&in_one_process, 1);
-    others_ = in_one_process > 0 ? nullptr : scene.others;
-    away_ = in_one_process > 0 && first_ == elsewhere;
+    // The process that owns the first element says what the tether remembers: others may get a part of it now.
+    const bool tells = first_ != elsewhere;
+    double all[] = {whole(ends_[0]) && whole(ends_[1]) ? 1.0 : 0.0, tells ? rest_ : 0.0, tells && broken_ ? 1.0 : 0.0};
+    if (scene.others) {
+      scene.others->sum(all, 3);
+      rest_ = all[1];
+      broken_ = all[2] > 0;
+    }
+    const bool in_one_process = all[0] > 0;
+    others_ = in_one_process ? nullptr : scene.others;
+    away_ = in_one_process && first_ == elsewhere;
     gather(scene.state);
     if (rest_ == at_the_start && !away_) rest_ = distance();
   }
@@ -184,14 +191,18 @@ class TetherDrive : public Drive {
              interaction);
   }
   std::string why_not_lengthened() const override { return "a tether names elements by number"; }
-  std::string not_for_lammps() const override { return without_contact ? "tether (without contact)" : ""; }
-  bool without_contact = false;
 
  private:
   TetherEnd on(const Topology& topology, const TypedEnd& typed) const {
     TetherEnd end;
     end.centre = typed.point;
-    for (const int e : typed.elements) end.elements.push_back(element_of_tube(topology, typed.tube, e, place));
+    for (const int e : typed.elements) {
+      const int element = element_of_tube(topology, typed.tube, e, place);
+      if (std::find(end.elements.begin(), end.elements.end(), element) != end.elements.end())
+        throw InputError(place, fmt::format("{} is an element of tube {} that is named already", e, typed.tube),
+                         "name each once");
+      end.elements.push_back(element);
+    }
     return end;
   }
 };
@@ -227,7 +238,6 @@ void check_ends(const TomlTable& t, const Scene& scene, TetherDrive& tether) {
     throw t.error("breaks_at_nm", fmt::format("is {:.4g} and not above rest_nm", tether.breaks_at),
                   "a tether breaks when it is stretched; raise it");
   tether.place = {scene.path, t.line(), "tether"};
-  tether.without_contact = scene.contact.law == "none";
 }
 
 const KeyTable<TetherDrive>& tether_table() {

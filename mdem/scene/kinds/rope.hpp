@@ -18,7 +18,7 @@ class RopeSource : public Source {
   // Where tubes of neighbouring strands end: at one height, shifted by a third of a tube, anywhere.
   enum class Stagger { none, brick, random };
 
-  static constexpr int least_elements = 3;  // of a tube
+  static constexpr int least_elements = 3;  // fewest elements of a tube
 
   int tubes = 91;  // number of tubes in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   Packing packing = Packing::hexagonal;
@@ -42,7 +42,7 @@ class RopeSource : public Source {
   }
   std::string description(const Topology&, const State&, double spacing_of_tubes) const override;
 
-  // Of the strands in a cross-section (nm), about its middle. `seed`: of random ones.
+  // Places of the strands in a cross-section (nm), about its middle. `seed`: for random ones.
   std::vector<std::pair<double, double>> places(double spacing_of_tubes, std::uint64_t seed = 1) const;
 
  private:

@@ -21,11 +21,6 @@ SceneKind state_kind() {
        {}});
 }
 
-std::string StateSource::not_for_lammps() const {
-  if (!std::filesystem::exists(path_)) return "";
-  return read_state_notes(path_).broken.empty() ? "" : "state.file with broken tubes";
-}
-
 void StateSource::place(const Scene&, double, Random&, Topology& topology, State& state) const {
   read_state_csv(path_, topology, state);
 }

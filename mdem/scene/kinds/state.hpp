@@ -14,7 +14,6 @@ class StateSource : public Source {
   void place(const Scene&, double spacing, Random&, Topology&, State&) const override;
   std::string file() const override { return path_; }
   StateMemory memory() const override { return read_state_memory(path_, memory_path_); }
-  std::string not_for_lammps() const override;
 
  private:
   std::string path_, memory_path_;

@@ -31,6 +31,13 @@ std::vector<LineDensity> line_densities(const Scene& scene) {
 void check_mixture(const TomlTable& top, const Scene& scene) {
   const LineParameters& first = *scene.sets[0].line;
   for (const ParameterSet& set : scene.sets) {
+    if (set.filament || scene.sets[0].filament) {
+      if (set.hash == scene.sets[0].hash) continue;
+      throw top.error("parameters",
+                      fmt::format("{} and {} have no contact law between one another: a filament knows its like alone",
+                                  scene.sets[0].name, set.name),
+                      "take one of them, or [contact] law = \"none\"");
+    }
     if (scene.sets.size() > 1 && !set.line->has_universal)
       throw top.error("parameters", fmt::format("{} has no [contact.line.universal]", set.name),
                       "tubes of different kinds need it; make the set with `ropewalk calibrate`");
@@ -79,6 +86,8 @@ std::shared_ptr<const ContactLaw> line_law_of(const Scene& scene) {
 
 std::vector<EndContact> contacts_of_ends(const Scene& scene) {
   std::vector<EndContact> out;
+  // A filament has round ends: the line law of its like acts between them as well.
+  if (scene.sets[0].filament) return out;
   const auto end_of = [](const ParameterSet& set) {
     return tube_end(set.chirality, set.radius, set.atoms_per_length);
   };

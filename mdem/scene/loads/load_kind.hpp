@@ -13,7 +13,7 @@ namespace ropewalk {
 
 struct LoadKind {
   std::string name;                                                                 // kind = "name"
-  std::vector<SceneKey> keys;                                                       // of this kind alone
+  std::vector<SceneKey> keys;                                                       // keys of this kind alone
   std::function<std::shared_ptr<const Load>(const TomlTable&, const Scene&)> read;  // acting on no element yet
 };
 

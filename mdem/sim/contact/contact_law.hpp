@@ -47,7 +47,7 @@ class ContactLaw {
 
   // Two long straight tubes in elements of `length` nm. Distances of their axes in nm; the defaults are found
   // numerically from energy(), and a law that binds nowhere rests at its cutoff.
-  virtual double parallel_distance(TypePair types, double length) const;  // of the lowest energy
+  virtual double parallel_distance(TypePair types, double length) const;  // distance of the lowest energy
   virtual double crossed_distance(TypePair types, double length) const;   // the same at a right angle
   virtual double binding(TypePair types, double length) const;            // eV/nm, at most, never negative
   // nm: where a typed cutoff would cut, of tube axes or of element centres.

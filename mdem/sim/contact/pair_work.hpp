@@ -30,7 +30,7 @@ struct NearElements {
 class ChunkPairs {
  public:
   virtual ~ChunkPairs() = default;
-  virtual int entries() const = 0;  // of the chunk's buffer
+  virtual int entries() const = 0;  // size of the chunk's buffer
   virtual void each(const std::function<void(const NearElements&)>& visit) const = 0;
 };
 

@@ -61,7 +61,7 @@ class DeviceStepper {
   void give_places(State& state) const;
 
   const std::vector<int>& hosted() const { return hosted_; }
-  std::size_t bytes() const { return bytes_; }  // on the device
+  std::size_t bytes() const { return bytes_; }  // memory on the device
 
  private:
   Device::Memory allocate(std::size_t bytes);

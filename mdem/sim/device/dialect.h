@@ -10,7 +10,7 @@
 #define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
 #define OF_GROUP
 #define LOCAL __local
-#define TO_LOCAL __local  // of a pointer
+#define TO_LOCAL __local  // address space of a pointer
 #define BARRIER barrier(CLK_LOCAL_MEM_FENCE)
 #define FOR_ITEMS(t) for (int t = get_local_id(0), once = 1; once; once = 0)
 #define GROUP_NUMBER ((int)get_group_id(0))

@@ -335,7 +335,7 @@ FUNCTION BodyFrame frame_at(GLOBAL const double* motion, int stride, int i) {
 // The angle of the vector (x, y) for x > 0. The tangent of a quarter of the angle follows from two square roots, and the
 // series of the arc tangent gives this quarter. The functions atan2 of different compilers differ in their last bits.
 FUNCTION double angle_of(double y, double x) {
-  const double tangent = y / (sqrt(x * x + y * y) + x);  // of the half angle
+  const double tangent = y / (sqrt(x * x + y * y) + x);  // tangent of the half angle
   const double t = tangent / (1 + sqrt(1 + tangent * tangent)), u = t * t;
   double sum = 0;
   for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - u * sum;

@@ -8,7 +8,7 @@
 namespace ropewalk {
 
 struct MotionBound {
-  static constexpr double radii = 0.25;  // of the largest tube, moved in one step
+  static constexpr double radii = 0.25;  // radii of the largest tube, moved in one step
   static constexpr double turn = 0.5;    // rad, turned in one step
 
   double speed2, spin2;  // nm^2/ps^2, 1/ps^2

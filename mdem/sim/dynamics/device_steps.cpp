@@ -95,7 +95,6 @@ void Simulation::compute_on_device() {
   forces_.lost = 0;
   add_point_loads();
   check_slip();
-  account_.dissipated -= part_step() * forces_.damping_power;
 }
 
 }  // namespace ropewalk

@@ -15,10 +15,10 @@ namespace ropewalk {
 // What one load does to one end of some tubes.
 struct EndDrive {
   End end = upper_end;
-  std::vector<int> tubes;   // in rising order
+  std::vector<int> tubes;   // tubes in rising order
   bool at_rope_end = true;  // no tube is inside of a strand
   std::size_t all = 0;      // tubes that end at this end of the rope
-  bool one_element = true;  // of each tube
+  bool one_element = true;  // it holds one element of each tube
   LoadEffect does;          // forces and couples are those on each tube, or on all of these tubes as one body
 };
 using EndDrives = std::vector<EndDrive>;
@@ -40,7 +40,7 @@ double whole_from(const EndDrives& drives);
 // A moment about the axis of a rope, prescribed at one end or at both.
 struct EndMoment {
   Schedule course;       // eV, on the upper end, or the opposite of that on the lower end; right-handed: positive
-  bool per_tube = true;  // on each tube, or on all of them together
+  bool per_tube = true;  // it acts on each tube, not on all of them together
   bool on_all = true;    // tubes of the rope
   LoadEffect::By by = LoadEffect::By::couple;
   bool relaxes_spins = false;
@@ -65,7 +65,7 @@ struct EndFreedom {
   enum class Sideways { free, mean_held, held };
   Sideways sideways = Sideways::free;  // mean_held: the mean of the tubes stays on the axis
   bool tilts = true;                   // each tube by itself
-  bool otherwise_driven = false;       // by more than the moment
+  bool otherwise_driven = false;       // more than the moment drives this end
   bool one_element = true;             // of each tube is in the clamp
 };
 EndFreedom end_freedom(const EndDrives& drives);

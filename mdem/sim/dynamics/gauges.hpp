@@ -76,7 +76,7 @@ class Gauges {
   Vector3 arm_now(const State& state, std::size_t end, std::size_t k) const;
 
   EndElements ends_;
-  std::vector<signed char> end_of_;          // of every element; -1: neither
+  std::vector<signed char> end_of_;          // end of every element; -1: neither
   std::array<std::vector<double>, 2> mass_;  // of the elements at each end
   std::array<std::vector<Vector3>, 2> arm_;  // of the start
   std::array<Vector3, 2> centre_{Vector3::Zero(), Vector3::Zero()};

@@ -55,11 +55,11 @@ struct LoadEffect {
   std::array<LoadComponent, 6> axes;  // along x, y, z, about x, y, z; on each element of a tube or on its clamp
   By by = By::couple;
   bool by_element = true;      // each element of a tube has the load, or the clamp of several has it
-  bool keeps_tilt = false;     // of the tubes
-  bool between_ends = false;   // of the upper end against the lower one
+  bool keeps_tilt = false;     // the tubes keep their tilt
+  bool between_ends = false;   // it acts between the upper end and the lower one
   bool relaxes_spins = false;  // no bond holds a moment by its twist
 };
-// Of the same force and couple on each element at all times.
+// The effect of the same force and couple on each element at all times.
 LoadEffect constant_effect(const Vector3& force, const Vector3& couple);
 
 // The processes that have the elements of a load together.

@@ -25,8 +25,8 @@ namespace ropewalk {
 struct Reduction {
   Tangent::Matrix motions;               // column by column
   Tangent::Matrix forces;                // row by row: the force on a coordinate, from those on all elements
-  Eigen::VectorXd mass;                  // of each coordinate
-  Tangent::Matrix stiffness;             // of what the constraints bear
+  Eigen::VectorXd mass;                  // mass of each coordinate
+  Tangent::Matrix stiffness;             // stiffness of what the constraints bear
   std::vector<Eigen::VectorXd> neutral;  // coordinates of motions that meet no stiffness, orthonormal by the masses
 };
 

@@ -11,7 +11,7 @@ namespace ropewalk {
 // It ends where both hold.
 struct RelaxGoal {
   double force = 1e-4;   // eV/nm: of the largest force, and of the largest torque over the radius of its tube
-  double energy = 1e-3;  // of the bonds' energy: its error, by estimate
+  double energy = 1e-3;  // estimated error over the bonds' energy
 
   bool operator==(const RelaxGoal& o) const { return force == o.force && energy == o.energy; }
 };

@@ -33,8 +33,8 @@ class Schedule {
   bool constant() const;                                                       // the same at all times
   double first() const { return points_.empty() ? 0.0 : points_.front().value; }
   double last() const { return points_.empty() ? 0.0 : points_.back().value; }
-  double largest() const;  // of its absolute values
-  double fastest() const;  // of its absolute rates between two points
+  double largest() const;  // largest absolute value
+  double fastest() const;  // largest absolute rate between two points
   // The first time at which the absolute value is this part of the largest one, along straight lines.
   double reaches(double part = 1) const;
   double leaves() const;  // ps, the last time at which it has the largest

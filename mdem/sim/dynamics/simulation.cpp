@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -90,16 +89,21 @@ struct Simulation::System {
   Simulation& s;
   bool energies;
 
-  void kick(double dt) { s.kick_with_loads(dt); }
+  EnergySupply& account() { return s.account_; }
+  void kick(double dt) { s.kick(dt); }
+  void add_work_of_loads(double dt) {
+    s.account_.work += dt * load_power(s.point_loads_, s.state_);
+    s.gauges_.add_loads(s.state_, s.point_loads_, dt);
+  }
   void drift(double dt) { s.drift(dt); }
-  void exchange_heat(double dt) { s.exchange_heat(dt); }
+  void bathe(double dt) { s.bathe(dt); }
+  double kinetic_energy() const { return ropewalk::kinetic_energy(s.topology_, s.state_); }
+  double damped(double dt) const { return s.forces_.lost - dt * s.forces_.damping_power; }
   void compute_forces() {
     if (s.device_.stepper) return s.compute_on_device();
     s.update_list();
     s.compute(energies, s.part_step());
     s.check_forces(energies);
-    s.account_.dissipated -= s.part_step() * s.forces_.damping_power;
-    s.account_.dissipated += s.forces_.lost;
   }
 };
 
@@ -120,7 +124,10 @@ void Simulation::step_once(bool energies) {
   ++state_.step;
   for (state_.part = 0; state_.part < divided_; ++state_.part) {
     const bool last = state_.part + 1 == divided_;
-    verlet_step(System{*this, energies && last}, part_step(), stepping_.thermostat != nullptr);
+    System system{*this, energies && last};
+    begin_step(system, part_step(), stepping_.thermostat != nullptr);
+    system.compute_forces();
+    end_step(system, part_step());
   }
   state_.part = 0;
   relax_spins_if_due();
@@ -134,33 +141,13 @@ void Simulation::kick(double dt) {
     for (const Segment& part : device_.hosted)
       ropewalk::kick(topology_, nullptr, rows_of(forces_), dt, part, state_);
   } else {
-    kick_all(dt);
+    account_.dissipated += kick_all(topology_, engine_.terms(), rows_of(forces_), dt, parts_.count(),
+                                    [this](int k) { return parts_[k]; }, state_);
   }
   if (loads_.empty()) return;
   constrain(topology_, loads_, loaded_, state_.time, 0.5 * part_step(), forces_, dt, state_, impulses_);
   for (const ConstraintImpulse& c : impulses_) account_.work += c.work;
   gauges_.add_constraints(state_, impulses_);
-}
-
-void Simulation::kick_all(double dt) {
-  const ForceTerms* const terms = engine_.terms().act_in_kick() ? &engine_.terms() : nullptr;
-  const ForceRows total = rows_of(forces_);
-  removed_.resize(static_cast<std::size_t>(parts_.count()));
-  for_each(parts_.count(), state_.size() > parallel_from, [&](int k) {
-    removed_[static_cast<std::size_t>(k)] = ropewalk::kick(topology_, terms, total, dt, parts_[k], state_);
-  });
-  if (terms) account_.dissipated += std::accumulate(removed_.begin(), removed_.end(), 0.0);
-}
-
-// The work of the loads is exact: the mean power before and after the kick, times dt.
-void Simulation::kick_with_loads(double dt) {
-  const auto half = [&] {
-    account_.work += 0.5 * dt * load_power(point_loads_, state_);
-    gauges_.add_loads(state_, point_loads_, 0.5 * dt);
-  };
-  half();
-  kick(dt);
-  half();
 }
 
 // Blocks with a velocity that is not finite stay where they are.
@@ -195,11 +182,9 @@ void Simulation::refuse_blow_up(const MotionBound& bound) const {
 }
 
 // Constrained components take no part: they are as before afterwards.
-void Simulation::exchange_heat(double dt) {
-  const double before = kinetic_energy(topology_, state_);
+void Simulation::bathe(double dt) {
   stepping_.thermostat->apply(topology_, dt, state_, thermostat_variables_);
   constrain(topology_, loads_, state_.time, 0.0, state_);
-  account_.heat += kinetic_energy(topology_, state_) - before;
 }
 
 void Simulation::update_list() {

@@ -161,7 +161,7 @@ class Simulation {
   const Gauges& gauges() const { return gauges_; }
 
  private:
-  struct System;  // what verlet_step acts on
+  struct System;  // that of sim/dynamics/verlet.hpp
 
   double part_step() const { return time_step_ / divided_; }
   void step_once(bool energies);
@@ -173,11 +173,9 @@ class Simulation {
   void compute_on_device();
   [[noreturn]] void refuse_blow_up(const MotionBound& bound) const;
   void kick(double dt);
-  void kick_all(double dt);
-  void kick_with_loads(double dt);
   void drift(double dt);
   void move(double dt);
-  void exchange_heat(double dt);
+  void bathe(double dt);
   void update_list();
   void compute(bool energies = true, std::optional<double> passed = {});
   void add_point_loads();
@@ -210,15 +208,14 @@ class Simulation {
   Stepping stepping_;
   std::vector<double> thermostat_variables_;
   std::vector<int> loaded_;                  // elements
-  std::vector<ConstraintImpulse> impulses_;  // of the last kick
-  std::vector<double> removed_;              // likewise, by terms in the kick, from each part
+  std::vector<ConstraintImpulse> impulses_;  // impulses in the last kick
   Gauges gauges_;
   TubeParts parts_;
   bool tunes_skin_ = false;
   NeighbourList list_;
   std::int64_t list_age_ = 0;     // steps since the list was built
   std::vector<Change> changes_;   // since then, of cached_elements each
-  std::vector<Fastest> fastest_;  // in the last drift, likewise
+  std::vector<Fastest> fastest_;  // fastest elements in the last drift, of cached_elements each
   ForceEngine engine_;
   Forces forces_;                       // with the loads
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step

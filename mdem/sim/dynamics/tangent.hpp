@@ -23,8 +23,8 @@ struct Tangent {
   using Matrix = Eigen::SparseMatrix<double>;
 
   Matrix stiffness, damping;  // K, C
-  Eigen::VectorXd mass;       // of each unknown: mass or inertia
-  Eigen::VectorXd force;      // of the state, its velocities left out
+  Eigen::VectorXd mass;       // mass or inertia of each unknown
+  Eigen::VectorXd force;      // force in the state, its velocities left out
   std::vector<int> order;     // order_along() the state
   long evaluations = 0;
   // The relative error of K and C along one motion of all elements. The error is large where a force term reaches

@@ -10,23 +10,45 @@
 // low by the factor 1 - (w dt)^2/4 in a mode of the angular frequency w. B. Leimkuhler, C. Matthews, Appl. Math.
 // Res. Express 2013, 34, DOI 10.1093/amrx/abs010. Z. Zhang et al., J. Chem. Phys. 147, 034109 (2017),
 // DOI 10.1063/1.4991621.
+//
+// Both Simulation and the ranks of LAMMPS step by these functions. dt in ps, energies in eV. Their `System` has
+//
+//   account()              what it keeps of energy
+//   kick(dt)               velocities by the forces, then the constraints, with the account of both
+//   add_work_of_loads(dt)  to the account, at the velocities of now
+//   drift(dt)              places, turns and time
+//   bathe(dt)              the bath, then the constraints; kinetic_energy(): of all or of its own elements
+//   damped(dt)             what damping and memories have taken out since the last step
 #pragma once
+
+#include "sim/dynamics/energy_supply.hpp"
 
 namespace ropewalk {
 
-// `System` has kick(dt), drift(dt), exchange_heat(dt) and compute_forces(). dt in ps.
+// The work of the loads is exact: the mean power before and after the kick, times dt.
 template <class System>
-void verlet_step(System system, double dt, bool thermostat) {
-  system.kick(0.5 * dt);
-  if (thermostat) {
-    system.drift(0.5 * dt);
-    system.exchange_heat(dt);
-    system.drift(0.5 * dt);
-  } else {
-    system.drift(dt);
-  }
-  system.compute_forces();
-  system.kick(0.5 * dt);
+void kick_with_loads(System& system, double dt) {
+  system.add_work_of_loads(0.5 * dt);
+  system.kick(dt);
+  system.add_work_of_loads(0.5 * dt);
+}
+
+// From the forces of the last step to where new ones are needed.
+template <class System>
+void begin_step(System& system, double dt, bool thermostat) {
+  kick_with_loads(system, 0.5 * dt);
+  if (!thermostat) return system.drift(dt);
+  system.drift(0.5 * dt);
+  const double before = system.kinetic_energy();
+  system.bathe(dt);
+  system.account().heat += system.kinetic_energy() - before;
+  system.drift(0.5 * dt);
+}
+
+template <class System>
+void end_step(System& system, double dt) {
+  system.account().dissipated += system.damped(dt);
+  kick_with_loads(system, 0.5 * dt);
 }
 
 }  // namespace ropewalk

@@ -49,6 +49,7 @@ bool add_term_kind(TermKind kind) {
 
 void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction) {
   interaction.term_reach = std::max(interaction.term_reach, term->pair_reach());
+  interaction.term_copies = std::max(interaction.term_copies, term->copy_reach());
   interaction.terms.push_back(std::move(term));
 }
 

@@ -50,9 +50,12 @@ struct TermSum {
 
 // Result of one update of the internal state: dissipated energy (eV), number of events (slips begun, tethers
 // broken), number of bonds formed.
+// `news`: other processes cannot see what has changed in the memory of elements of which they have copies, and must
+// get it before the next step.
 struct StateUpdate {
   double lost = 0;
   long events = 0, begun = 0;
+  bool news = false;
 };
 
 // What a term has done since the start.
@@ -94,7 +97,7 @@ struct NamedMemory {
 // Something that happened in the course of a run: when (ps), what, between which elements of the scene, where (nm).
 struct TermEvent {
   double time = 0;
-  const char* what = "";
+  std::string what;  // small letters and spaces
   int a = 0, b = 0;
   Vector3 place;
 };
@@ -122,6 +125,8 @@ class ForceTerm {
   // nm, of element centres: pairs that come nearer before the next list are in list_chunk; 0: the term has none.
   // At most the cutoff of the list. Without a contact law there are no chunks.
   virtual double pair_reach() const { return 0; }
+  // nm: how far from an own element a process needs copies for this term, besides pair_reach().
+  virtual double copy_reach() const { return 0; }
   virtual void start_chunks(std::size_t /*count*/) {}
   virtual void list_chunk(std::size_t /*chunk*/, const ChunkPairs&) {}
   virtual TermSum add_pairs(const State&, std::size_t /*chunk*/, const PairBuffer&) { return {}; }
@@ -166,7 +171,7 @@ class ForceTerm {
   // What acts from the start on, for the account.
   virtual long begun_at_start() const { return 0; }
   // What has happened since the start, or since forget_events(), for the run's file events.csv. set_memory() drops
-  // them: who keeps a memory writes the events first.
+  // them: who keeps a memory writes the events first. Each process has those of its own elements.
   virtual std::vector<TermEvent> events() const { return {}; }
   virtual void forget_events() {}
 
@@ -195,7 +200,7 @@ const std::vector<TermKind>& term_kinds();
 // To be called before main() begins, for a static variable.
 bool add_term_kind(TermKind kind);
 
-// Adds a term, and sees that the neighbour list reaches as far as it does.
+// Adds a term, and sees that the neighbour list and the copies in other processes reach as far as it does.
 void add_term(std::shared_ptr<const ForceTerm> term, Interaction& interaction);
 
 // Energy (eV) and account of all terms of one name.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "model/contract.hpp"
 #include "sim/forces/forces.hpp"
@@ -11,11 +13,21 @@
 namespace ropewalk {
 namespace {
 
-constexpr int the_account = -1;  // stands for the account in place of an element
+constexpr std::size_t head = 3, numbers_of_event = 6;  // numbers of a record's head; of an event before its word
 
 void add_sum(TermSum& all, const TermSum& one) {
   all.energy += one.energy;
   all.power += one.power;
+}
+
+bool earlier(const TermEvent& x, const TermEvent& y) { return std::pair(x.time, x.a) < std::pair(y.time, y.a); }
+
+[[noreturn]] void refuse_memory() { throw std::runtime_error("the memory of the force terms is damaged"); }
+
+// A whole number from 0, below `end`.
+std::size_t whole(double number, double end) {
+  if (!(number >= 0 && number < end) || number != std::floor(number)) refuse_memory();
+  return static_cast<std::size_t>(number);
 }
 
 bool same_terms(const Damping& a, const Damping& b) {
@@ -41,29 +53,69 @@ std::vector<double> numbers_of(const TermStates& memories) {
   return numbers;
 }
 
+std::size_t record_length(const std::vector<double>& numbers, std::size_t at) {
+  if (at + head > numbers.size()) return 0;
+  const double count = numbers[at + 2];
+  if (!(count >= 0 && count <= static_cast<double>(numbers.size() - at - head)) || count != std::floor(count)) return 0;
+  return head + static_cast<std::size_t>(count);
+}
+
+std::vector<double> numbers_of(const std::vector<TermEvent>& events) {
+  std::vector<double> numbers;
+  for (const TermEvent& e : events) {
+    numbers.insert(numbers.end(), {0, an_event, static_cast<double>(numbers_of_event + e.what.size()), e.time,
+                                   static_cast<double>(e.a), static_cast<double>(e.b), e.place.x(), e.place.y(),
+                                   e.place.z()});
+    numbers.insert(numbers.end(), e.what.begin(), e.what.end());
+  }
+  return numbers;
+}
+
+std::vector<TermEvent> take_events(std::vector<double>& numbers, int elements) {
+  constexpr std::size_t longest_word = 40;
+  std::vector<TermEvent> events;
+  std::size_t kept = 0;
+  for (std::size_t at = 0, length; at < numbers.size(); at += length) {
+    length = record_length(numbers, at);
+    if (length == 0) refuse_memory();
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at),
+               end = begin + static_cast<std::ptrdiff_t>(length);
+    if (begin[1] != an_event) {
+      std::copy(begin, end, numbers.begin() + static_cast<std::ptrdiff_t>(kept));
+      kept += length;
+      continue;
+    }
+    const auto word = begin + static_cast<std::ptrdiff_t>(head + numbers_of_event);
+    if (length < head + numbers_of_event || length > head + numbers_of_event + longest_word ||
+        !std::all_of(begin, end, [](double x) { return std::isfinite(x); }) ||
+        !std::all_of(word, end, [](double x) { return x == ' ' || (x >= 'a' && x <= 'z'); }))
+      refuse_memory();
+    TermEvent e{begin[3], "", static_cast<int>(whole(begin[4], elements)), static_cast<int>(whole(begin[5], elements)),
+                Vector3(begin[6], begin[7], begin[8])};
+    std::transform(word, end, std::back_inserter(e.what), [](double x) { return static_cast<char>(x); });
+    events.push_back(std::move(e));
+  }
+  numbers.resize(kept);
+  std::stable_sort(events.begin(), events.end(), earlier);
+  return events;
+}
+
 TermStates memories_of(const std::vector<double>& numbers, std::size_t terms, int elements) {
   TermStates all{std::vector<TermState>(terms), std::vector<TermAccount>(terms)};
-  const auto fail = [] { throw std::runtime_error("the memory of the force terms is damaged"); };
-  const auto whole = [&](std::size_t at, double end) {
-    if (at >= numbers.size() || !(numbers[at] >= 0 && numbers[at] < end) || numbers[at] != std::floor(numbers[at]))
-      fail();
-    return static_cast<std::size_t>(numbers[at]);
-  };
-  for (std::size_t at = 0; at < numbers.size();) {
-    const std::size_t term = whole(at, static_cast<double>(terms)),
-                      left = numbers.size() - at - std::min(numbers.size() - at, std::size_t{3}),
-                      count = whole(at + 2, static_cast<double>(left) + 1);
-    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at + 3);
+  for (std::size_t at = 0, length; at < numbers.size(); at += length) {
+    length = record_length(numbers, at);
+    if (length == 0) refuse_memory();
+    const std::size_t term = whole(numbers[at], static_cast<double>(terms));
+    const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(at + head),
+               end = numbers.begin() + static_cast<std::ptrdiff_t>(at + length);
     if (numbers[at + 1] == the_account) {
-      const bool could_be = count == 4 && std::isfinite(begin[0]) && std::isfinite(begin[1]) && begin[2] >= 0 &&
+      const bool could_be = end - begin == 4 && std::isfinite(begin[0]) && std::isfinite(begin[1]) && begin[2] >= 0 &&
                             std::isfinite(begin[2]) && begin[3] >= 0 && std::isfinite(begin[3]);
-      if (!could_be) fail();
+      if (!could_be) refuse_memory();
       all.accounts[term].add({begin[0], begin[1], begin[2], begin[3]});
     } else {
-      const auto element = static_cast<int>(whole(at + 1, elements));
-      all.records[term].push_back({element, {begin, begin + static_cast<std::ptrdiff_t>(count)}});
+      all.records[term].push_back({static_cast<int>(whole(numbers[at + 1], elements)), {begin, end}});
     }
-    at += 3 + count;
   }
   for (TermState& records : all.records)
     std::stable_sort(records.begin(), records.end(),
@@ -107,6 +159,7 @@ double ForceTerms::advance(double dt, const State& state) {
     const StateUpdate now = w.term->advance(dt, state);
     w.account.add({now.lost, 0, static_cast<double>(now.events), static_cast<double>(now.begun)});
     lost += now.lost;
+    news_ = news_ || now.news;
   }
   return lost;
 }
@@ -181,16 +234,17 @@ const std::vector<char>* ForceTerms::broken_bonds() const {
 }
 
 std::vector<TermEvent> ForceTerms::events() const {
-  std::vector<TermEvent> all;
+  std::vector<TermEvent> all = earlier_;
   for (const Working& w : terms_) {
     const std::vector<TermEvent> of_term = w.term->events();
     all.insert(all.end(), of_term.begin(), of_term.end());
   }
-  std::stable_sort(all.begin(), all.end(), [](const TermEvent& x, const TermEvent& y) { return x.time < y.time; });
+  std::stable_sort(all.begin(), all.end(), earlier);
   return all;
 }
 
 void ForceTerms::forget_events() {
+  earlier_.clear();
   for (Working& w : terms_) w.term->forget_events();
 }
 
@@ -210,13 +264,16 @@ std::vector<NamedMemory> ForceTerms::memories() const {
   return all;
 }
 
-void ForceTerms::set_memory(const std::vector<double>& numbers, int elements, bool with_accounts) {
+void ForceTerms::set_memory(const std::vector<double>& numbers, int elements, bool goes_on) {
   const TermStates all = memories_of(numbers, terms_.size(), elements);
+  earlier_ = goes_on ? events() : std::vector<TermEvent>();
   for (std::size_t k = 0; k < terms_.size(); ++k) {
+    terms_[k].term->forget_events();
     terms_[k].term->set_memory(all.records[k]);
-    terms_[k].account = with_accounts ? all.accounts[k] : TermAccount();
+    if (!goes_on) terms_[k].account = all.accounts[k];
   }
   stamp_ = 0;
+  news_ = false;
 }
 
 std::vector<double> ForceTerms::halved_memory(const std::vector<int>& heirs) const {

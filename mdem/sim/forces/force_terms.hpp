@@ -10,16 +10,29 @@
 
 namespace ropewalk {
 
-// Of several terms.
+// States of several terms.
 struct TermStates {
   std::vector<TermState> records;
   std::vector<TermAccount> accounts;
 };
 
 // Memories as one list of numbers: for each record the number of its term, its element, how many numbers follow,
-// and these; an account stands as a record of the element -1. Lists of several processes may stand behind one
-// another.
+// and these; an account stands as a record of the element -1, an event as one of the element -2. Lists of several
+// processes may stand behind one another.
+inline constexpr int the_account = -1, an_event = -2;
 std::vector<double> numbers_of(const TermStates& memories);
+std::vector<double> numbers_of(const std::vector<TermEvent>& events);
+// How many numbers the record has that begins at `at`, with the three in front; 0: it is none, or not whole.
+std::size_t record_length(const std::vector<double>& numbers, std::size_t at);
+// Calls work(element, its first number, how many) for each record of a list that is whole, the three in front included.
+template <class Work>
+void for_records(const std::vector<double>& numbers, const Work& work) {
+  for (std::size_t at = 0, length; (length = record_length(numbers, at)) > 0; at += length)
+    work(static_cast<int>(numbers[at + 1]), numbers.data() + at, length);
+}
+// Takes the events out of such a list, in the order of ForceTerms::events(). Throws std::runtime_error for elements
+// that a scene of so many does not have.
+std::vector<TermEvent> take_events(std::vector<double>& numbers, int elements);
 // Records in the order of their elements, accounts added up. Throws std::runtime_error if these are not the
 // memories of `terms` terms in a scene of `elements` elements.
 TermStates memories_of(const std::vector<double>& numbers, std::size_t terms, int elements);
@@ -42,6 +55,9 @@ class ForceTerms : private PairWork {
   // For the contact engine; null: no term acts on pairs.
   PairWork* pairs() { return reach() > 0 ? this : nullptr; }
 
+  // StateUpdate::news of a term since the last set_memory().
+  bool have_news() const { return news_; }
+
   bool act_in_kick() const { return in_kick_; }
   void add_in_kick(const State& state, const ForceRows& total, const Segment& of, const ForceRows& out) const;
 
@@ -49,19 +65,20 @@ class ForceTerms : private PairWork {
 
   // The name of the first of the interaction's own terms that has no tangent; empty: all have added theirs.
   std::string add_tangent(const State& state, const ForceTerm::AddBlock& add) const;
-  // Of the interaction's own terms, one after another.
+  // Accounts of the interaction's own terms, one after another.
   std::vector<TermAccount> accounts() const;
   // ForceTerm::broken_bonds of the one that has some; null: none has.
   const std::vector<char>* broken_bonds() const;
-  // Events of all terms since the start or since forget_events(), in the order of time.
+  // Events of all terms since the start or since forget_events(), in the order of time, at one time in that of their
+  // elements: whichever process saw them.
   std::vector<TermEvent> events() const;
   void forget_events();
 
   std::vector<double> memory() const;
   // The memories of the interaction's own terms, in their order.
   std::vector<NamedMemory> memories() const;
-  // prepare() then finds all lists new. `with_accounts`: false in all processes but one. Throws std::runtime_error.
-  void set_memory(const std::vector<double>& numbers, int elements, bool with_accounts = true);
+  // prepare() then finds all lists new. `goes_on`: accounts and events stay as they are. Throws std::runtime_error.
+  void set_memory(const std::vector<double>& numbers, int elements, bool goes_on = false);
   std::vector<double> halved_memory(const std::vector<int>& heirs) const;
   std::size_t bytes() const;
 
@@ -79,10 +96,11 @@ class ForceTerms : private PairWork {
   std::vector<Working> terms_;
   std::vector<std::shared_ptr<const ForceTerm>> copied_;  // the first of them are copies of these
   Damping damping_;                                       // that the others stand for
+  std::vector<TermEvent> earlier_;                        // events of before the last set_memory()
   const Processes* others_ = nullptr;
-  const State* state_ = nullptr;  // of the evaluation
+  const State* state_ = nullptr;  // state of the evaluation
   long stamp_ = 0;                // of the list that they are prepared for
-  bool in_kick_ = false;
+  bool in_kick_ = false, news_ = false;
 };
 
 }  // namespace ropewalk

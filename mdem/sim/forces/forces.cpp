@@ -33,9 +33,9 @@ std::size_t ForceEngine::bytes() const {
 }
 
 void ForceEngine::set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                             bool with_accounts) {
+                             bool goes_on) {
   use_terms(interaction);
-  terms_.set_memory(memory, elements, with_accounts);
+  terms_.set_memory(memory, elements, goes_on);
 }
 
 // A contact engine has listed the pairs of the terms that were there before.
@@ -126,6 +126,7 @@ double kinetic_energy(const Topology& topology, const State& state) {
   for (int t = 0; t < topology.tubes(); ++t) {
     double translation = 0, rotation = 0;
     for (int i = topology.tube_begin[t]; i < topology.tube_begin[t + 1]; ++i) {
+      if (!topology.owns(i)) continue;
       translation += state.velocity[static_cast<std::size_t>(i)].squaredNorm();
       rotation += state.angular_velocity[static_cast<std::size_t>(i)].squaredNorm();
     }

@@ -68,7 +68,7 @@ struct TubeBonds {
 // Energy and power of some bonds.
 struct BondSum {
   BondEnergy energy;
-  double power = 0;   // of their damping
+  double power = 0;   // power of their damping
   int slipping = -1;  // first element of a bond twisted by 90 degrees or more
 };
 
@@ -107,9 +107,9 @@ class ForceEngine {
   void forget_events() { terms_.forget_events(); }
   // Goes on with the memories of another engine, for the same list.
   void take_terms_of(const ForceEngine& other) { terms_ = other.terms_; }
-  // Goes on with these memories, ForceTerms::memory(). Throws std::runtime_error.
+  // Goes on with these memories, ForceTerms::set_memory(). Throws std::runtime_error.
   void set_memory(const Interaction& interaction, const std::vector<double>& memory, int elements,
-                  bool with_accounts = true);
+                  bool goes_on = false);
   // Makes the terms ready for a list that a state with this memory has had before.
   void prepare_again(const Topology& topology, const NeighbourList& list, const State& state) {
     terms_.prepare(topology, list, state, true);
@@ -123,10 +123,10 @@ class ForceEngine {
 
   TubeParts parts_;
   std::vector<Joint> joints_;  // behind each part
-  std::vector<BondSum> sums_;  // of each part
-  Vec3Array axis_;             // of all elements
+  std::vector<BondSum> sums_;  // sums of each part
+  Vec3Array axis_;             // axes of all elements
   std::shared_ptr<const ContactLaw> law_;
-  Cloned<ContactEngine> contact_;  // of this law
+  Cloned<ContactEngine> contact_;  // engine of this law
   ForceTerms terms_;
   Times times_;
 };
@@ -137,6 +137,7 @@ void compute_reference(const Topology& topology, const Interaction& interaction,
 // Adds a damping force and its power.
 void add_pair(const DampingForce& damping, std::size_t i, std::size_t j, Forces& out);
 
+// Kinetic energy of own elements, eV.
 double kinetic_energy(const Topology& topology, const State& state);
 
 // Force and torque sums about the origin: both zero where nothing external acts.

@@ -47,7 +47,7 @@ class MotionSince {
   Vec3Array position_, axis_;
   TwistOfAll twist_;
   double farthest_ = 0;  // nm: largest distance of an element from the axis of the twist
-  double elements_ = 0;  // of all processes
+  double elements_ = 0;  // number on all processes
   const AllProcesses* others_ = nullptr;
   double arms2_[3] = {0, 0, 0};  // sums of the squared distances from the axis, times z^0, z^1 and z^2
 };

@@ -47,7 +47,7 @@ class Column {
 template <std::size_t N>
 class ColumnBlock {
  public:
-  std::size_t stride() const { return stride_; }  // in numbers
+  std::size_t stride() const { return stride_; }  // numbers from column to column
 
  protected:
   using Columns = std::array<Column*, N>;

@@ -22,7 +22,8 @@ struct Interaction {
   Damping damping;
   std::vector<std::shared_ptr<const ForceTerm>>
       terms;              // what else adds forces, as it is at the start; see add_term()
-  double term_reach = 0;  // nm: pairs that the terms ask the neighbour list for
+  double term_reach = 0;   // nm: pairs that the terms ask the neighbour list for
+  double term_copies = 0;  // nm: how far from own elements the terms look at others
 
   bool has_contact() const { return law != nullptr; }
   bool damped_contact() const { return damping.contact.eta > 0; }

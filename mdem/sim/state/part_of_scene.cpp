@@ -37,21 +37,24 @@ State part_of_state(const State& scene, const std::vector<int>& number) {
   return part;
 }
 
+int place_of(const Topology& here, int number) {
+  if (!here.part) return number;
+  const std::vector<int>& numbers = here.part->number;
+  const auto at = std::lower_bound(numbers.begin(), numbers.end(), number);
+  return at != numbers.end() && *at == number ? static_cast<int>(at - numbers.begin()) : -1;
+}
+
 std::vector<int> own_places(const Topology& topology, const std::vector<int>& elements) {
   if (!topology.part) return elements;
   std::vector<int> own;
-  const std::vector<int>& number = topology.part->number;
-  for (const int e : elements) {
-    const auto at = std::lower_bound(number.begin(), number.end(), e);
-    const auto place = static_cast<int>(at - number.begin());
-    if (at != number.end() && *at == e && topology.owns(place)) own.push_back(place);
-  }
+  for (const int e : elements)
+    if (const int place = place_of(topology, e); place >= 0 && topology.owns(place)) own.push_back(place);
   return own;
 }
 
 double copy_reach(const Topology& topology, const Interaction& in, double skin) {
   constexpr double longest_bond = 1.5;  // element lengths, far above any strain for which the model holds
-  return std::max(in.cutoff(), longest_bond * topology.longest_element()) + skin;
+  return std::max({in.cutoff(), in.term_copies, longest_bond * topology.longest_element()}) + skin;
 }
 
 }  // namespace ropewalk

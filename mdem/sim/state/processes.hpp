@@ -14,7 +14,6 @@ class Processes {
   virtual void sum(double* values, std::size_t count) const = 0;
   // The lists of all processes behind one another.
   virtual std::vector<int> join(const std::vector<int>& own) const = 0;
-  virtual std::vector<double> join(const std::vector<double>& own) const = 0;
 };
 
 }  // namespace ropewalk

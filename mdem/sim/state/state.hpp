@@ -93,7 +93,7 @@ struct QuaternionArray : ColumnBlock<4> {
 struct TubeType {
   double element_length = 0;  // equilibrium length of a bond, nm
   double radius = 0;          // nm
-  double mass = 0;            // of one element, eV ps^2/nm^2
+  double mass = 0;            // mass of one element, eV ps^2/nm^2
   double inertia = 0;         // isotropic, eV ps^2
   BondStiffness bond;
 
@@ -109,8 +109,8 @@ struct TubeType {
 // and bond of the scene belongs to one process. Tubes of such a topology are pieces: consecutive elements of one
 // tube.
 struct PartOfScene {
-  std::vector<char> own;     // of each element
-  std::vector<int> number;   // of each element, in the scene
+  std::vector<char> own;     // whether each element belongs to this part
+  std::vector<int> number;   // number of each element in the scene
   std::vector<int> row_end;  // of each piece, the number behind the last element of its tube in the scene; where
                              // ends meet (TubeGroups::ends_meet), of its strand
 };
@@ -138,7 +138,7 @@ struct TubeGroups {
 // ones are bonded.
 struct Topology {
   std::vector<int> tube_begin{0};
-  std::vector<int> tube_type;  // of each tube, an index of `types`
+  std::vector<int> tube_type;  // type of each tube, an index of `types`
   std::vector<TubeType> types = std::vector<TubeType>(1);
   TubeGroups groups;
   std::optional<PartOfScene> part;  // none: these elements are the scene

@@ -36,7 +36,7 @@ class AllowedMotions {
   // At the state of the simulation.
   explicit AllowedMotions(const Simulation& s);
 
-  // Of each unknown; none of images.
+  // Mass of each unknown; images have none.
   const Eigen::VectorXd& mass() const { return mass_; }
   // Adds `by` times the inertial forces of an allowed motion.
   void add_inertia(double by, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
@@ -52,7 +52,7 @@ class AllowedMotions {
   bool keeps_momentum() const { return keeps_momentum_; }
   // Whether P moves with the state.
   bool turns() const { return turns_; }
-  // Of each unknown, whether the constraints tie it to others.
+  // Whether the constraints tie each unknown to others.
   const std::vector<char>& tied() const { return tied_; }
   // Forces and motions under the constraints alone, motions without stiffness included.
   void constrain_motion(Eigen::VectorXd& u) const { constrain_motion(state_, u); }
@@ -93,9 +93,9 @@ class AllowedMotions {
   Eigen::VectorXd mass_;
   std::vector<char> held_, tied_;
   struct Image {
-    Eigen::Index row = 0, original = 0;  // of their first unknowns
-    double sign = 1, part = 0;           // of the mass of all images
-    Eigen::Matrix3d turn;                // from the original
+    Eigen::Index row = 0, original = 0;  // their first unknowns
+    double sign = 1, part = 0;           // its part of the mass of all images
+    Eigen::Matrix3d turn;                // rotation from the original
   };
   std::vector<Image> images_;
   bool free_period_ = false;

@@ -16,7 +16,7 @@ struct BlockMatrix {
     int row = 0, column = 0;
     Block block;
   };
-  std::vector<int> begin{0};  // of each row, in `column`
+  std::vector<int> begin{0};  // first block of each row, in `column`
   std::vector<int> column;    // above the diagonal
   std::vector<Block, Eigen::aligned_allocator<Block>> block, diagonal;
   std::vector<Single, Eigen::aligned_allocator<Single>> single;

@@ -8,7 +8,7 @@ namespace ropewalk {
 
 struct StaticsCost {
   double first_seconds = 0;      // from a start that does not rest
-  double next_seconds = 0;       // of the next state along a schedule
+  double next_seconds = 0;       // time of the next state along a schedule
   double stability_seconds = 0;  // of each; 0: its modes would take too long
   double bytes = 0;              // of the tangent, and of the simulations that a step keeps
   double decomposition_bytes = 0;

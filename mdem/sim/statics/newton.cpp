@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int most_products = 400;         // of one solution
-constexpr int most_tries = 25;             // of one step
+constexpr int most_products = 400;         // products in one solution
+constexpr int most_tries = 25;             // tries of one step
 constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
 constexpr double nearly_free = 0.1;        // 1/ps: with a smaller shift only soft motions are held back
 constexpr double fire_until = 0.05;        // eV/nm: smaller forces are those of contacts that have formed

@@ -20,9 +20,9 @@ using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y
 // The elements of a rope by sections across it: as many along each strand. None: the elements lie in no sections,
 // as in a film. The sections of a thick rope are cut into parts of few neighbouring strands each.
 struct Sections {
-  std::vector<int> of;  // of each element
+  std::vector<int> of;  // section of each element
   int count = 0;
-  std::vector<int> part;  // of each element, counted along the rope
+  std::vector<int> part;  // part of each element, counted along the rope
   int parts_of_each = 1;
 
   int parts() const { return count * parts_of_each; }
@@ -47,8 +47,8 @@ class Preconditioner {
   using Blocks = std::vector<Block, Eigen::aligned_allocator<Block>>;
   const Topology& topology_;
   const Sections& sections_;
-  Blocks inverse_, lower_;  // of the pivots of each chain; L_i,i-1
-  Blocks motion_;           // of each element in the six motions of its section
+  Blocks inverse_, lower_;  // inverse pivots of each chain; L_i,i-1
+  Blocks motion_;           // motion of each element in the six motions of its section
   Eigen::MatrixXd band_;    // Cholesky factor, row k of column j: (j + k, j)
 };
 

@@ -46,9 +46,9 @@ class StiffnessMaker {
 
   BlockMatrix k_;
   std::vector<char> touches_, bonded_;  // of each block above the diagonal: the pair is near; has a bond
-  std::vector<LineNodePairs> nodes_;    // of tube types i, j at i * types + j
+  std::vector<LineNodePairs> nodes_;    // pairs of tube types i, j at i * types + j
   std::vector<Vector3> axis_;
-  std::vector<int> type_;  // of each element
+  std::vector<int> type_;  // type of each element
 };
 
 // The name of a force term that has no tangent; empty: all have one.

@@ -155,7 +155,7 @@ bool add_line_stiffness(const LineNodePairs& p, const double* s, const double* n
     for (int m = 0; m < p.lanes; ++m) sum += power[m] * g[m];
     G[q] = sum;
   }
-  // Of k^a l^b.
+  // Index of k^a l^b.
   const auto at = [](int a, int b) { return (a + b) * (a + b + 1) / 2 + b; };
   const double w[3] = {-n_i[0], -n_i[1], -n_i[2]};
   const auto sum_of = [&](int a, int b) {

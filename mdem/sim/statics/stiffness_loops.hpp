@@ -22,7 +22,7 @@ class LineNodePairs {
   explicit LineNodePairs(const LineContact& contact);
 
   static constexpr int degree = 4, powers = 15;  // k^a l^b with a + b up to the degree
-  FullTable table;                               // of squared distances in nm^2
+  FullTable table;                               // table over squared distances in nm^2
   int lanes = 0;                                 // pairs of nodes, filled up to whole vectors
   double cutoff2 = 0, core2 = 0;                 // nm^2
   std::vector<double> k, l;                      // nm, places of the nodes on their elements

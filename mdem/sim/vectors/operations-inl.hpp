@@ -21,7 +21,7 @@
 #else
 #define VEC_IN_V4(F) VEC_IN_V3(F)
 #endif
-// In the order of VectorUnit.
+// Instances in the order of VectorUnit.
 #define VEC_EXPORT(F) static decltype(&in_base::F) const F##_of_units[] = {&in_base::F, VEC_IN_V3(F), VEC_IN_V4(F)}
 #define VEC_IN_USE(F) (*F##_of_units[static_cast<int>(vector_unit_in_use())])
 

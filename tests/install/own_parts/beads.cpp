@@ -1,5 +1,5 @@
-// A contact law of one's own beside the installed library, [contact] law = "beads": a Lennard-Jones law between the
-// centres of elements. How such a file is written: docs/how-to/contact-law.md.
+// The example of docs/how-to/contact-law.md, [contact] law = "beads": a Lennard-Jones law between the centres of
+// elements, here beside the installed library. tests/examples/contact_law/beads.cpp has its tests.
 #include <cmath>
 #include <vector>
 
@@ -19,7 +19,7 @@ class BeadLaw : public ContactLaw {
   std::string name() const override { return "beads"; }
   double cutoff() const override { return cutoff_; }
   PairForce force(TypePair types, const Vector3& separation, const Vector3&, const Vector3&) const override {
-    const double r = separation.norm();
+    const double r = detail::safe_distance(separation);
     if (r >= cutoff_) return {};
     const auto [energy, slope] = lennard_jones(types, r);
     const auto [energy_c, slope_c] = lennard_jones(types, cutoff_);

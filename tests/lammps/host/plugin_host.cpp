@@ -1,5 +1,6 @@
 // A LAMMPS with the part of the PLUGIN package that ours needs: opens the plugin and registers its styles.
-// Debian's LAMMPS lacks that package. First argument: the plugin; then those of LAMMPS.
+// Debian's LAMMPS lacks that package. First argument: the plugin; then those of LAMMPS. Each rank says at the end how
+// many bytes it has sent, and got by messages to all.
 #include <dlfcn.h>
 #include <mpi.h>
 
@@ -33,7 +34,63 @@ void announce(Announced* style, void* handle) {
   if (kind == "fix") (*lmp->modify->fix_map)[style->name] = reinterpret_cast<Modify::FixCreator>(style->creator);
 }
 
+long long bytes = 0;
+
+void count(long long numbers, MPI_Datatype type) {
+  int size = 0;
+  PMPI_Type_size(type, &size);
+  bytes += numbers * size;
+}
+int ranks() {
+  int all = 0;
+  PMPI_Comm_size(MPI_COMM_WORLD, &all);
+  return all;
+}
+
 }  // namespace
+
+// LAMMPS and the plugin find these before those of the library of MPI.
+extern "C" {
+int MPI_Send(const void* from, int n, MPI_Datatype t, int to, int tag, MPI_Comm c) {
+  count(n, t);
+  return PMPI_Send(from, n, t, to, tag, c);
+}
+int MPI_Rsend(const void* from, int n, MPI_Datatype t, int to, int tag, MPI_Comm c) {
+  count(n, t);
+  return PMPI_Rsend(from, n, t, to, tag, c);
+}
+int MPI_Isend(const void* from, int n, MPI_Datatype t, int to, int tag, MPI_Comm c, MPI_Request* r) {
+  count(n, t);
+  return PMPI_Isend(from, n, t, to, tag, c, r);
+}
+int MPI_Sendrecv(const void* from, int n, MPI_Datatype t, int to, int tag, void* into, int m, MPI_Datatype u, int source,
+                 int other, MPI_Comm c, MPI_Status* s) {
+  count(n, t);
+  return PMPI_Sendrecv(from, n, t, to, tag, into, m, u, source, other, c, s);
+}
+int MPI_Allreduce(const void* from, void* into, int n, MPI_Datatype t, MPI_Op op, MPI_Comm c) {
+  count(n, t);
+  return PMPI_Allreduce(from, into, n, t, op, c);
+}
+int MPI_Allgather(const void* from, int n, MPI_Datatype t, void* into, int m, MPI_Datatype u, MPI_Comm c) {
+  count(static_cast<long long>(m) * ranks(), u);
+  return PMPI_Allgather(from, n, t, into, m, u, c);
+}
+int MPI_Allgatherv(const void* from, int n, MPI_Datatype t, void* into, const int* m, const int* at, MPI_Datatype u,
+                   MPI_Comm c) {
+  for (int k = 0; k < ranks(); ++k) count(m[k], u);
+  return PMPI_Allgatherv(from, n, t, into, m, at, u, c);
+}
+int MPI_Alltoallv(const void* from, const int* n, const int* from_at, MPI_Datatype t, void* into, const int* m,
+                  const int* at, MPI_Datatype u, MPI_Comm c) {
+  for (int k = 0; k < ranks(); ++k) count(n[k], t);
+  return PMPI_Alltoallv(from, n, from_at, t, into, m, at, u, c);
+}
+int MPI_Bcast(void* of, int n, MPI_Datatype t, int root, MPI_Comm c) {
+  count(n, t);
+  return PMPI_Bcast(of, n, t, root, c);
+}
+}
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
@@ -48,6 +105,10 @@ int main(int argc, char** argv) {
   init(lmp, plugin, reinterpret_cast<void*>(&announce));
   static_cast<LAMMPS_NS::LAMMPS*>(lmp)->input->file();
   lammps_close(lmp);
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::printf("rank %d: %lld bytes\n", rank, bytes);
+  std::fflush(stdout);
   MPI_Finalize();
   return 0;
 }

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "model/error.hpp"
 #include "scene/lammps_states.hpp"
+#include "scene/scene_toml.hpp"
+#include "scene/templates.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk::test {
@@ -36,6 +39,32 @@ class LammpsFiles : public ::testing::Test {
 
   LammpsDirectory dir;
 };
+
+// docs/tutorials/cluster.md has these in a table.
+TEST_F(LammpsFiles, ThreeKindsOfScenesAreNotForLammps) {
+  const std::map<std::string, std::string> refused = {{"interior", "periodic: is not for LAMMPS: the images"},
+                                                      {"yarn", "periodic: is not for LAMMPS: the images"},
+                                                      {"geometric", "twist.geometric_only: is not for LAMMPS: all"}};
+  std::size_t met = 0;
+  for (const SceneTemplate& kind : scene_templates()) {
+    SCOPED_TRACE(kind.name);
+    const std::string path = dir.path + "/" + kind.name + ".toml";
+    spit(path, kind.text);
+    const auto found = refused.find(kind.name);
+    std::string told;
+    try {
+      refuse_what_lammps_lacks(read_scene(path));
+    } catch (const InputError& e) {
+      told = e.what();
+    }
+    met += found != refused.end();
+    if (found == refused.end())
+      EXPECT_EQ(told, "");
+    else
+      EXPECT_NE(told.find(found->second), std::string::npos) << told;
+  }
+  EXPECT_EQ(met, refused.size());
+}
 
 TEST_F(LammpsFiles, TubesAreCountedInRows) {
   Topology t = two_types();

@@ -140,7 +140,7 @@ TEST_F(StateOfAnEnd, LinksStayWhereTheyAre) {
   EXPECT_EQ(on.term_accounts().at(0).events, 0);
   for (const TermEvent& e : on.term_events()) {
     EXPECT_EQ(e.time, 0);
-    EXPECT_STREQ(e.what, "link formed");
+    EXPECT_EQ(e.what, "link formed");
   }
 }
 

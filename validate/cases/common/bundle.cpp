@@ -16,11 +16,19 @@ LineContact line_contact_of(const ParameterSet& set) {
 }
 
 PairIntegral surface_integral(const ParameterSet& set) {
+  if (set.filament)
+    throw NotApplicable("the oracle is the surface integral over the atoms of two tubes, and a filament has none");
   const UniversalLine& atoms = set.line->universal;
   const AtomLaw law{atoms.epsilon, atoms.sigma,
                     atoms.lj_cutoff > 0 ? atoms.lj_cutoff : std::numeric_limits<double>::infinity()};
   const Shell shell{set.radius, set.line->surface_density};
   return PairIntegral(law, shell, shell);
+}
+
+Well pair_well(const ParameterSet& set) {
+  if (!set.filament) return surface_integral(set).parallel_well();
+  const LineWell well = line_parallel_well(set.line->density);
+  return {well.distance, well.energy};
 }
 
 double rope_energy(const PairIntegral& integral, int tubes, double spacing) {

@@ -14,6 +14,10 @@ LineContact line_contact_of(const ParameterSet& set);
 // The surface integral that the set's line law was fitted to: Lennard-Jones law, radius and surface density.
 PairIntegral surface_integral(const ParameterSet& set);
 
+// The well of two parallel tubes: that of the surface integral. A filament has no atoms to integrate over; its own law
+// is all that is known of its contact.
+Well pair_well(const ParameterSet& set);
+
 // Energy per length (eV/nm) of a straight hexagonal rope of this spacing (nm): the sum of the integral over all
 // pairs of tubes. Thin tubes reach their second neighbours.
 double rope_energy(const PairIntegral& integral, int tubes, double spacing);

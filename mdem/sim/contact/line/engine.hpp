@@ -56,9 +56,9 @@ template <class Table>
 struct PairTables {
   using T = typename Table::Value;
   Table table;
-  std::vector<T> s;                 // of the nodes of i, from its centre
-  T half = 0;                       // of the last one
-  T weight = 0, energy_weight = 0;  // of two nodes: times du/dy and a separation, eV/nm; times u, eV
+  std::vector<T> s;                 // places of the nodes of i, from its centre
+  T half = 0;                       // place of the last one
+  T weight = 0, energy_weight = 0;  // weights of two nodes: times du/dy and a separation, eV/nm; times u, eV
   T far2 = static_cast<T>(1e30);    // a squared separation out of reach of all nodes
 
   PairTables(const LineContact& law, double unit) : table(law.density, unit) {
@@ -79,7 +79,7 @@ struct LineKernelInput {
   const Vec3Array* axis;
   const LineList* list;
   const NodePositions<C>* nodes;
-  const PairTables<Table>* pairs;  // of tube types i, j at i * types + j
+  const PairTables<Table>* pairs;  // tables of tube types i, j at i * types + j
   double unit, per_unit;           // nm, and its inverse
   double moved;                    // nm: by no more have distances shrunk since the list was built
   bool energies;                   // whether they are wanted
@@ -145,7 +145,7 @@ class LineEngine : public ContactEngine {
   LineList list_;
   long stamp_ = 0;
   bool full_ = false;
-  std::vector<NodeOffsets> offsets_;  // of each tube type
+  std::vector<NodeOffsets> offsets_;  // offsets of each tube type
   WorkShares shares_;
   WrittenRanges written_;
   Countdowns left_;  // chunks that have yet to act on each block

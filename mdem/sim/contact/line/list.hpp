@@ -24,7 +24,7 @@ struct NeighbourSpan {
   int range = 0;                   // of those that the chunk writes to
   float gap_to_cutoff = 0;         // nm: so far outside the cutoff its nearest node was when the list was built
   short node_from = 0, nodes = 0;  // that may come within the cutoff; counted from the first node of `first`
-  short type = 0;                  // of the tube
+  short type = 0;                  // type of the tube
   std::int8_t elements = 0;        // that may come within the cutoff
   std::int8_t near_from = 0, near = 0;  // elements that other work on pairs may reach, counted from `first`
 
@@ -45,8 +45,8 @@ struct WrittenRange {
 
 // Some elements and all that they act on.
 struct LineChunk {
-  std::vector<Segment> own;          // in the order of their elements
-  std::vector<WrittenRange> ranges;  // in the order of their elements
+  std::vector<Segment> own;          // segments in the order of their elements
+  std::vector<WrittenRange> ranges;  // ranges in the order of their elements
   int elements = 0, nodes = 0;       // sizes of its buffers
   int vectors = 0;                   // of 16 nodes, that one of its elements may meet
 };
@@ -96,7 +96,7 @@ class LineList {
   void cut_into_chunks(const Topology& topology, const Vec3Array& position, std::size_t count);
   void find_ranges(const Topology& topology, LineChunk& chunk);
 
-  std::vector<int> nodes_per_element_;  // of each tube type
+  std::vector<int> nodes_per_element_;  // count for each tube type
   std::vector<NeighbourSpan> spans_;
   std::vector<std::size_t> begin_;  // first span of each element, and the end of the last one's
   std::vector<LineChunk> chunks_;

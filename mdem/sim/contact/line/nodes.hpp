@@ -48,7 +48,7 @@ NodeOffsets node_offsets(int count, double length);
 struct NodeInput {
   const LineChunk& chunk;
   const std::vector<int>& tube_type;
-  const std::vector<NodeOffsets>& offsets;  // of each tube type
+  const std::vector<NodeOffsets>& offsets;  // offsets of each tube type
   const Vec3Array& position;
   const Vec3Array& axis;
 };

@@ -46,7 +46,7 @@ struct RadialTable {
                                                                  : per_octave == 32 ? 5
                                                                                     : -1);
 
-  alignas(64) T c[degree + 1][segments] = {};  // of u
+  alignas(64) T c[degree + 1][segments] = {};  // coefficients of u
   alignas(64) T d[degree][segments] = {};      // of du/dy: forces are the same bits with and without energies
   T scale = 0, shift = 0;                      // y = scale X + shift, X = rho^2 in units of unit^2
   T core2 = 0, cutoff2 = 0;                    // X
@@ -69,7 +69,7 @@ struct RadialPieces {
   static constexpr int operations = 4 + 2 * (degree - 1) + 2;  // w, t and its square; du/dw; factor w^2
 
   // By `entry`.
-  alignas(64) T c[degree + 1][pieces] = {};  // of u
+  alignas(64) T c[degree + 1][pieces] = {};  // coefficients of u
   alignas(64) T d[degree][pieces] = {};      // of du/dw (dw/dy)/w^2, which times w^2 is du/dy of a RadialTable
   alignas(64) T middle[pieces] = {};         // w
   T edge[pieces - 1] = {};                   // X where pieces meet, falling

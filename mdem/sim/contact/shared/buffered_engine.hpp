@@ -39,7 +39,7 @@ class BufferedEngine : public ContactEngine {
 
   const NeighbourList* list_ = nullptr;  // of the last sum, with its parts
   const TubeParts* parts_ = nullptr;
-  std::vector<ContactBuffer<double>> buffers_;  // of each chunk
+  std::vector<ContactBuffer<double>> buffers_;  // one buffer for each chunk
   long stamp_ = 0;
 };
 

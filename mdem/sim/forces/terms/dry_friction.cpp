@@ -6,6 +6,7 @@
 
 #include "model/contract.hpp"
 #include "model/units.hpp"
+#include "sim/neighbours/cell_grid.hpp"
 #include "sim/threads/for_each.hpp"
 #include "sim/threads/span.hpp"
 
@@ -51,7 +52,7 @@ struct Candidate {
 //   v_a = A along_a + B turning_a, v_b likewise:  force on a  v_a + v_b,  torque on a  w x v_a,  on b  w x v_b.
 struct Pair {
   double s = 0, cosine = 1,
-         across = 0;  // of the axes; nm from a's centre to b's, square of its part across the axes
+         across = 0;  // cosine of the axes' angle; nm from a's centre to b's, square of its part across the axes
   Direction of_a, of_b;
   Vector3 w, along_a, along_b, turning_a, turning_b;
   // Rate of a slip whose parts are v_a and v_b.
@@ -213,7 +214,7 @@ class DryFrictionTerm : public ForceTerm {
     int type = 0;
     bool own = true, ends_tube = false;
     double length = 0, radius = 0;  // nm
-    int image = 0;                  // of a slice: 1 above it, -1 below it, 0 in it
+    int image = 0;                  // image in a slice: 1 above it, -1 below it, 0 in it
   };
 
   // The largest sum over a row of the drag's matrix over eta l, with six tubes at the distance d around one. The
@@ -296,7 +297,7 @@ class DryFrictionTerm : public ForceTerm {
     p.turning_b = turning_part(at_b, p.w, p.cosine > 0 ? r_b : -r_b, p.of_b);
     return p;
   }
-  // Of arm alpha; `direction`: of w in the frame.
+  // Turning part of arm alpha; `direction`: of w in the frame.
   static Vector3 turning_part(const Frame& frame, const Vector3& w, double arm, Direction& direction) {
     const double x = frame.e1.dot(w), y = frame.e2.dot(w), inverse = 1 / std::sqrt(std::max(x * x + y * y, 1e-12));
     direction = {x * inverse, y * inverse};
@@ -310,7 +311,7 @@ class DryFrictionTerm : public ForceTerm {
     c.placed = true;
   }
 
-  // Of a slip, over the stiffness: nm^2, nm.
+  // Potential of a slip, over the stiffness: nm^2, nm.
   struct Potential {
     double value = 0, slope = 0;
   };
@@ -434,29 +435,33 @@ class DryFrictionTerm : public ForceTerm {
                     contacts_.end());
   }
 
-  // Pairs that may come into contact before the next list. Each process has the pairs of some elements, and all
-  // must know the others. The places are those that the list was built for: a resumed run finds the same pairs.
+  // Pairs that may come into contact before the next list, those of two copies among them. The places are those that
+  // the list was built for: a resumed run finds the same pairs. The list has the pairs of own elements alone.
   void find_candidates(const ListedScene& scene) {
     candidates_.clear();
-    std::vector<int> numbers;  // numbers of a and b, one after another
+    const Topology& topology = scene.topology;
     const Vec3Array& listed = scene.list.reference();
-    const double half = 0.5 * scene.topology.longest_element();
-    for (int i = 0; i < scene.topology.elements(); ++i) {
-      if (!element(i).own) continue;
-      scene.list.for_neighbours(i, [&](int j) {
-        if (!acts_between(i, j)) return;
-        const double reach =
-            std::hypot(element(i).radius + element(j).radius + begins_within, half) + scene.list.skin;
-        const Vector3 w = listed[static_cast<std::size_t>(j)] - listed[static_cast<std::size_t>(i)];
-        if (!(w.squaredNorm() < square(reach))) return;
-        numbers.push_back(element(i).number);
-        numbers.push_back(element(j).number);
-      });
+    const double half = 0.5 * topology.longest_element(), skin = scene.list.skin;
+    const auto take = [&](int i, int j) {
+      if (!acts_between(i, j)) return;
+      const double reach = std::hypot(element(i).radius + element(j).radius + begins_within, half) + skin;
+      const Vector3 w = listed[static_cast<std::size_t>(j)] - listed[static_cast<std::size_t>(i)];
+      if (w.squaredNorm() < square(reach)) candidates_.push_back({i, j});
+    };
+    for (int i = 0; i < topology.elements(); ++i)
+      if (element(i).own) scene.list.for_neighbours(i, [&](int j) { take(i, j); });
+    if (topology.part) {
+      const CellGrid grid(listed, std::hypot(2 * topology.largest_radius() + begins_within, half) + skin);
+      std::vector<int> found;
+      for (int tube = 0; tube < topology.tubes(); ++tube) {
+        const int excluded = topology.type_of(tube).elements_within(scene.list.excluded_arc);
+        for (int i = topology.tube_begin[tube]; i < topology.tube_begin[tube + 1]; ++i) {
+          if (element(i).own) continue;
+          const std::size_t count = grid.find(i, topology.last_within(excluded, i, tube), found);
+          for (std::size_t k = 0; k < count; ++k) take(i, found[k]);
+        }
+      }
     }
-    if (scene.others) numbers = scene.others->join(numbers);
-    for (std::size_t k = 0; k < numbers.size(); k += 2)
-      if (const int a = place_of(numbers[k]), b = place_of(numbers[k + 1]); a >= 0 && b >= 0)
-        candidates_.push_back({a, b});
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& x, const Candidate& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   }

@@ -8,6 +8,7 @@
 #include "model/contract.hpp"
 #include "model/counter_random.hpp"
 #include "sim/neighbours/cell_grid.hpp"
+#include "sim/state/part_of_scene.hpp"
 #include "sim/threads/for_each.hpp"
 #include "sim/threads/span.hpp"
 
@@ -15,6 +16,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double forming_interval = 1;               // ps
+constexpr double rounding = 1e-9;                    // ps, of sums of steps
 constexpr std::uint32_t room_question = 0xFFFFFFFF;  // a number k of drawn() that no link takes
 
 // --- where tubes face each other -----------------------------------------------------------------------
@@ -33,7 +35,7 @@ Axis axis_at(const Topology& topology, const State& state, int element) {
 // b is not within reach there.
 struct Facing {
   double on_b = 0;  // nm
-  Vector3 to_b;     // from axis to axis
+  Vector3 to_b;     // vector from axis to axis
 };
 bool faces(const Axis& a, const Axis& b, double s, double reach, Facing& out) {
   const Vector3 from_b = a.centre + s * a.along - b.centre;
@@ -44,7 +46,7 @@ bool faces(const Axis& a, const Axis& b, double s, double reach, Facing& out) {
 }
 
 // In the frames of both elements. The points stand at half of the rest length from the walls, or in the middle.
-LinkPlace place_of(const LinkLaw& law, const State& state, int i, int j, const Axis& a, const Axis& b, double s,
+LinkPlace link_at(const LinkLaw& law, const State& state, int i, int j, const Axis& a, const Axis& b, double s,
                    const Facing& facing) {
   LinkPlace link;
   link.a = i;
@@ -87,10 +89,22 @@ int poisson(double mean, double u) {
   return n;
 }
 
-bool is_linked(const LinkLaw& law, const Topology& topology, int i, int j) {
-  const int tube_i = topology.tube_of(i), tube_j = topology.tube_of(j);
-  return tube_i != tube_j && law.types.have(topology.tube_type[static_cast<std::size_t>(tube_i)],
-                                            topology.tube_type[static_cast<std::size_t>(tube_j)]);
+// The tubes of the scene, and what this process has of it. Elements are meant by their places here.
+struct LinkedScene {
+  const Topology &scene, &here;
+
+  int number(int i) const { return number_in_scene(here, i); }
+  int tube(int i) const { return scene.tube_of(number(i)); }
+  bool ends_tube(int i) const {
+    const auto t = static_cast<std::size_t>(tube(i));
+    return number(i) == scene.tube_begin[t] || number(i) + 1 == scene.tube_begin[t + 1];
+  }
+};
+
+bool is_linked(const LinkLaw& law, const LinkedScene& in, int i, int j) {
+  const int tube_i = in.tube(i), tube_j = in.tube(j);
+  return tube_i != tube_j && law.types.have(in.scene.tube_type[static_cast<std::size_t>(tube_i)],
+                                            in.scene.tube_type[static_cast<std::size_t>(tube_j)]);
 }
 
 // In a slice a link and its images are one: that of two own elements, or of an own one and an image above it.
@@ -113,37 +127,61 @@ void lift(const Topology& topology, LinkPlace& link) {
 
 // Chosen for a pair of elements with this mean number per length.
 template <class Add>
-void choose(const LinkLaw& law, const Topology& topology, const State& state, int i, int j, double per_length,
+void choose(const LinkLaw& law, const LinkedScene& in, const State& state, int i, int j, double per_length,
             std::uint32_t step, const Add& add) {
-  const Axis a = axis_at(topology, state, i), b = axis_at(topology, state, j);
-  const int count = poisson(2 * a.half * per_length, drawn(law, i, j, step, 0));
+  const Axis a = axis_at(in.here, state, i), b = axis_at(in.here, state, j);
+  const int first = in.number(i), second = in.number(j);
+  const int count = poisson(2 * a.half * per_length, drawn(law, first, second, step, 0));
   for (int k = 0; k < count; ++k) {
-    const double s = a.half * (2 * drawn(law, i, j, step, static_cast<std::uint32_t>(k) + 1) - 1);
+    const double s = a.half * (2 * drawn(law, first, second, step, static_cast<std::uint32_t>(k) + 1) - 1);
     Facing facing;
-    if (faces(a, b, s, law.reach, facing)) add(place_of(law, state, i, j, a, b, s, facing));
+    if (faces(a, b, s, law.reach, facing)) add(link_at(law, state, i, j, a, b, s, facing));
   }
 }
 
 // `count` links of an end element with whatever it faces.
-void choose_at_end(const LinkLaw& law, const Topology& topology, const State& state, int i,
+void choose_at_end(const LinkLaw& law, const LinkedScene& in, const State& state, int i,
                    const std::vector<int>& near, std::uint32_t step, std::vector<LinkPlace>& links) {
-  const Axis a = axis_at(topology, state, i);
+  const Axis a = axis_at(in.here, state, i);
+  const int end = in.number(i);
   for (int n = 0; n < law.at_ends; ++n) {
     const auto k = 2 * static_cast<std::uint32_t>(n);
-    const double s = a.half * (2 * drawn(law, i, i, step, k) - 1);
+    const double s = a.half * (2 * drawn(law, end, end, step, k) - 1);
     std::vector<int> faced;
     Facing facing;
     for (const int j : near)
-      if (is_linked(law, topology, i, j) && faces(a, axis_at(topology, state, j), s, law.reach, facing))
+      if (is_linked(law, in, i, j) && faces(a, axis_at(in.here, state, j), s, law.reach, facing))
         faced.push_back(j);
     if (faced.empty()) continue;
     const int j =
-        faced[static_cast<std::size_t>(drawn(law, i, i, step, k + 1) * static_cast<double>(faced.size()))];
-    const Axis b = axis_at(topology, state, j);
+        faced[static_cast<std::size_t>(drawn(law, end, end, step, k + 1) * static_cast<double>(faced.size()))];
+    const Axis b = axis_at(in.here, state, j);
     faces(a, b, s, law.reach, facing);
-    links.push_back(place_of(law, state, i, j, a, b, s, facing));
-    lift(topology, links.back());
+    links.push_back(link_at(law, state, i, j, a, b, s, facing));
+    lift(in.here, links.back());
   }
+}
+
+// The links that the law chooses, by the places of their elements, in the order of the elements. Those of two copies
+// may lack some that other processes choose.
+std::vector<LinkPlace> chosen_links(const LinkLaw& law, const LinkedScene& in, const State& state, std::uint32_t step) {
+  std::vector<LinkPlace> links;
+  if (!(law.density > 0 || law.at_ends > 0)) return links;
+  const Topology& here = in.here;
+  const CellGrid grid(state.position, 2 * here.largest_radius() + law.reach + here.longest_element());
+  std::vector<int> found, near;
+  for (int i = 0; i < here.elements(); ++i) {
+    const bool end = in.ends_tube(i);
+    if (!(law.density > 0) && !end) continue;
+    const std::size_t count = grid.find(i, end && law.at_ends > 0 ? -1 : i, found);
+    near.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(near.begin(), near.end());
+    for (const int j : near)
+      if (law.density > 0 && j > i && is_linked(law, in, i, j) && stands_for_images(here, i, j))
+        choose(law, in, state, i, j, law.density, step, [&](LinkPlace place) { links.push_back(std::move(place)); });
+    if (end && law.at_ends > 0 && !here.is_image(i)) choose_at_end(law, in, state, i, near, step, links);
+  }
+  return links;
 }
 
 // --- the term ------------------------------------------------------------------------------------------
@@ -158,7 +196,8 @@ struct Link {
 // A link that acts between these elements: as it was placed, or as its image.
 struct ActingLink {
   std::size_t link = 0;
-  int a = 0, b = 0;
+  int a = 0, b = 0;  // places here
+  bool is_image = false;
 };
 
 struct LinkAction {
@@ -176,7 +215,11 @@ constexpr std::size_t numbers_of_head_0_3 = 4, numbers_of_link_0_3 = 21;
 class LinkTerm : public ForceTerm {
  public:
   LinkTerm(LinkLaw law, std::vector<LinkPlace> at_start, const Topology& scene)
-      : law_(std::move(law)), scene_(scene), waits_(law_.placed_at > 0), stiffness_(stiffness_of(at_start)) {
+      : law_(std::move(law)),
+        scene_(scene),
+        here_(scene),
+        waits_(law_.placed_at > 0),
+        stiffness_(stiffness_of(at_start)) {
     for (LinkPlace& place : at_start) links_.push_back({std::move(place), 0, Vector3::Zero()});
     sort();
   }
@@ -184,7 +227,13 @@ class LinkTerm : public ForceTerm {
   std::string name() const override { return "links"; }
 
   void prepare(const ListedScene& scene) override {
-    ROPEWALK_EXPECTS(!scene.topology.part);
+    if (scene.topology.part) {
+      here_ = scene.topology;
+      if (scene.others) hear_of_head(*scene.others);
+      check_stretch(scene.state);
+    } else if (!has_head_) {
+      throw std::runtime_error("the memory of links is damaged");
+    }
     if (!placed_) {
       for (Link& link : links_) {
         link.formed_at = action_of(link.at, link.at.a, link.at.b, scene.state).place;
@@ -194,6 +243,12 @@ class LinkTerm : public ForceTerm {
     }
     index();
   }
+  // A process must see all that its elements may be linked with, and where links form also what those are linked with.
+  double copy_reach() const override {
+    const double half = 0.5 * scene_.longest_element(),
+                 forms = half + std::hypot(2 * scene_.largest_radius() + law_.reach, half);
+    return law_.forming > 0 || law_.placed_at > 0 ? forms + std::max(forms, longest_link()) : longest_link();
+  }
 
   void gather(const State& state) override {
     actions_.resize(acting_.size());
@@ -202,28 +257,35 @@ class LinkTerm : public ForceTerm {
     });
   }
 
+  // Processes that have both ends of a link judge it alike; that of its first element counts it.
   StateUpdate advance(double, const State& state) override {
-    if (waits_ && state.time >= law_.placed_at) place_all(state);
-    if (law_.forming > 0 && state.time - last_formed_ >= forming_interval) form(state);
-    StateUpdate all{-given_, 0, begun_};
+    StateUpdate all;
+    if (waits_ && state.time >= law_.placed_at - rounding) all.news = place_all(state);
+    if (law_.forming > 0 && state.time - last_formed_ >= forming_interval - rounding)
+      all.news = form(state) || all.news;
+    all.lost = -given_;
+    all.begun = begun_;
     given_ = 0;
     begun_ = 0;
+    bool some_broke = false;
     // Whether a link breaks follows from itself and not from its image, which stands behind it.
     std::vector<char> broke(links_.size(), 0);
     for (std::size_t k = 0; k < acting_.size(); ++k) {
       const Link& link = links_[acting_[k].link];
       const LinkAction& now = actions_[k];
-      const bool is_image = acting_[k].a != link.at.a;
+      const bool is_image = acting_[k].is_image;
       const bool breaks =
           (law_.strength > 0 && now.pull > law_.strength) || (law_.toughness > 0 && now.energy > law_.toughness);
       if (is_image ? broke[acting_[k].link] == 0 : !breaks) continue;
+      broke[acting_[k].link] = 1;
+      some_broke = true;
+      if (!here_.owns(acting_[k].a)) continue;
       all.lost += now.energy;
       if (is_image) continue;
-      broke[acting_[k].link] = 1;
       events_.push_back({state.time, "link broke", link.at.a, link.at.b, now.place});
       ++all.events;
     }
-    if (all.events > 0) {
+    if (some_broke) {
       std::size_t kept = 0;
       for (std::size_t k = 0; k < links_.size(); ++k)
         if (broke[k] == 0) links_[kept++] = links_[k];
@@ -260,8 +322,11 @@ class LinkTerm : public ForceTerm {
 
   bool remembers() const override { return true; }
   TermState memory() const override {
-    TermState out{{0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0, told}}};
+    TermState out;
+    if (owns_number(here_, 0))
+      out.push_back({0, {last_formed_, static_cast<double>(begun_), given_, waits_ ? 1.0 : 0.0, told}});
     for (const Link& link : links_) {
+      if (!owns_number(here_, link.at.a)) continue;
       TermRecord record{link.at.a, {static_cast<double>(link.at.b)}};
       const auto add = [&](const Vector3& v) {
         record.numbers.insert(record.numbers.end(), {v.x(), v.y(), v.z()});
@@ -274,21 +339,22 @@ class LinkTerm : public ForceTerm {
   }
 
   void set_memory(const TermState& memory) override {
-    if (memory.empty()) return;  // nothing has happened yet
+    if (memory.empty() && !here_.part) return;  // nothing has happened yet
     const auto fail = [] { throw std::runtime_error("the memory of links is damaged"); };
     links_.clear();
     events_.clear();
-    bool has_head = false, tells = false;
+    bool tells = false;
+    has_head_ = false;
     for (const TermRecord& r : memory) {
       const std::vector<double>& x = r.numbers;
       if (!std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) fail();
-      if ((x.size() == numbers_of_head || x.size() == numbers_of_head_0_3) && !has_head) {
+      if ((x.size() == numbers_of_head || x.size() == numbers_of_head_0_3) && !has_head_) {
         last_formed_ = x[0];
         begun_ = static_cast<int>(std::lround(x[1]));
         given_ = x[2];
         waits_ = x[3] != 0;
         tells = x.size() == numbers_of_head && x[4] != told;
-        has_head = true;
+        has_head_ = true;
         continue;
       }
       const bool of_0_3 = x.size() == numbers_of_link_0_3;
@@ -304,7 +370,6 @@ class LinkTerm : public ForceTerm {
       links_.push_back(link);
       if (tells) tell_formed(link);
     }
-    if (!has_head) fail();
     placed_ = true;
   }
 
@@ -356,6 +421,43 @@ class LinkTerm : public ForceTerm {
   std::size_t bytes() const override { return links_.size() * (sizeof(Link) + sizeof(LinkAction)); }
 
  private:
+  // nm: how far the elements of a link can be apart before it breaks, or may be where none breaks.
+  double longest_link() const {
+    constexpr double unbreakable = 1;  // nm: the largest stretch that is foreseen
+    const double arm = std::hypot(scene_.largest_radius() + 0.5 * std::max(law_.reach, law_.rest),
+                                  0.5 * scene_.longest_element()),
+                 softest = std::min(law_.stretch, law_.shear);
+    double stretch = unbreakable;
+    if (softest > 0 && law_.strength > 0) stretch = law_.strength / softest;
+    if (softest > 0 && law_.toughness > 0) {
+      const double tough = std::sqrt(2 * law_.toughness / softest);
+      stretch = law_.strength > 0 ? std::min(stretch, tough) : tough;
+    }
+    return 2 * arm + std::min(stretch, unbreakable);
+  }
+  void check_stretch(const State& state) const {
+    constexpr double of_a_step = 0.1;  // nm: the last step may have stretched it to where it breaks
+    for (const Link& link : links_) {
+      const int a = place_of(here_, link.at.a), b = place_of(here_, link.at.b);
+      if (a < 0 || !here_.owns(a)) continue;
+      const double apart = b < 0 ? copy_reach() : (state.position[static_cast<std::size_t>(b)] -
+                                                   state.position[static_cast<std::size_t>(a)]).norm();
+      if (b < 0 || apart > longest_link() + of_a_step)
+        throw std::runtime_error("the link between elements " + std::to_string(link.at.a) + " and " +
+                                 std::to_string(link.at.b) + " is stretched over more than " +
+                                 std::to_string(std::min(apart, longest_link())) +
+                                 " nm, farther than processes see");
+    }
+  }
+  // The process that owns the first element of the scene says what belongs to no link.
+  void hear_of_head(const Processes& others) {
+    const bool tells = owns_number(here_, 0);
+    double head[] = {tells ? last_formed_ : 0.0, tells && waits_ ? 1.0 : 0.0};
+    others.sum(head, 2);
+    last_formed_ = head[0];
+    waits_ = head[1] > 0;
+  }
+
   LinkAction action_of(const LinkPlace& link, int on_a, int on_b, const State& state) const {
     const auto a = static_cast<std::size_t>(on_a), b = static_cast<std::size_t>(on_b);
     const Quaternion q_a = state.orientation[a], q_b = state.orientation[b];
@@ -397,18 +499,28 @@ class LinkTerm : public ForceTerm {
     return 2 * most * std::max(law_.stretch, law_.shear) * (1 + lever);
   }
 
-  void place_all(const State& state) {
-    for (LinkPlace& place : placed_links(law_, scene_, state, {})) take_in(std::move(place), state);
+  // Both return whether there are new links.
+  bool place_all(const State& state) {
+    const std::size_t before = links_.size();
+    for (LinkPlace& place : chosen_links(law_, {scene_, here_}, state, 0)) take_in(std::move(place), state);
     waits_ = false;
     set_in_order(state);
+    return links_.size() > before;
   }
+  // By places here. Of two copies other processes know more.
   void take_in(LinkPlace place, const State& state) {
+    if (!here_.owns(place.a) && !here_.owns(place.b)) return;
     Link link{std::move(place), state.time, Vector3::Zero()};
     const LinkAction action = action_of(link.at, link.at.a, link.at.b, state);
     link.formed_at = action.place;
-    given_ += (has_image(link.at) ? 2 : 1) * action.energy;
-    ++begun_;
+    const bool counts = here_.owns(link.at.a);
+    const int images = has_image(link.at) ? 2 : 1;
+    link.at.a = number_in_scene(here_, link.at.a);
+    link.at.b = number_in_scene(here_, link.at.b);
     links_.push_back(link);
+    if (!counts) return;
+    given_ += images * action.energy;
+    ++begun_;
     tell_formed(link);
   }
   void tell_formed(const Link& link) {
@@ -416,28 +528,31 @@ class LinkTerm : public ForceTerm {
   }
 
   // New links, for the time since the last ones.
-  void form(const State& state) {
+  bool form(const State& state) {
     LinkLaw now = law_;
     now.density = law_.forming * (state.time - last_formed_);
     now.at_ends = 0;
     last_formed_ = state.time;
     std::vector<int> count(state.size(), 0);
     for (const Link& link : links_)
-      for (const int e : {link.at.a, link.at.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
+      for (const int number : {link.at.a, link.at.b})
+        if (const int e = place_of(here_, number); e >= 0) ++count[static_cast<std::size_t>(here_.original_of(e))];
     // An element has room for a whole number of links. Its share, `most` times its length, is rounded up or down at
-    // random, so that the mean over all elements is that share.
-    const auto full = [&](int element) {
-      const int e = scene_.original_of(element);
-      const double room = law_.most * element_length_ + drawn(law_, e, e, 0, room_question);
-      return count[static_cast<std::size_t>(e)] + 1 > room;
+    // random, so that the mean over all elements is that share. It takes the first ones that are offered; a link
+    // forms where both elements take it. So it depends on what is near, and on no order of the whole scene.
+    const auto takes = [&](int element) {
+      const int e = here_.original_of(element), number = number_in_scene(here_, e);
+      const double room = law_.most * element_length_ + drawn(law_, number, number, 0, room_question);
+      return ++count[static_cast<std::size_t>(e)] <= room;
     };
     const auto step = static_cast<std::uint32_t>(state.step) + 1;
-    for (LinkPlace& place : placed_links(now, scene_, state, {}, step)) {
-      if (full(place.a) || full(place.b)) continue;
-      for (const int e : {place.a, place.b}) ++count[static_cast<std::size_t>(scene_.original_of(e))];
-      take_in(std::move(place), state);
+    const std::size_t before = links_.size();
+    for (LinkPlace& place : chosen_links(now, {scene_, here_}, state, step)) {
+      const bool first = takes(place.a), second = takes(place.b);
+      if (first && second) take_in(std::move(place), state);
     }
     set_in_order(state);
+    return links_.size() > before;
   }
   void set_in_order(const State& state) {
     sort();
@@ -450,43 +565,46 @@ class LinkTerm : public ForceTerm {
   }
 
   // Of a slice: a link to an image above acts on the original through its own image, one period lower.
-  bool has_image(const LinkPlace& link) const { return scene_.is_image(link.a) || scene_.is_image(link.b); }
+  bool has_image(const LinkPlace& link) const { return here_.is_image(link.a) || here_.is_image(link.b); }
 
   void index() {
     acting_.clear();
     for (std::size_t k = 0; k < links_.size(); ++k) {
       const LinkPlace& at = links_[k].at;
-      acting_.push_back({k, at.a, at.b});
+      const int a = place_of(here_, at.a), b = place_of(here_, at.b);
+      if (a < 0 || b < 0) continue;
+      acting_.push_back({k, a, b, false});
       if (!has_image(at)) continue;
       const auto lower = [&](int e) { return scene_.is_image(e) ? scene_.original_of(e) : scene_.image_below(e); };
-      acting_.push_back({k, lower(at.a), lower(at.b)});
+      acting_.push_back({k, lower(at.a), lower(at.b), true});
       ROPEWALK_EXPECTS(acting_.back().a >= 0 && acting_.back().b >= 0);
     }
-    const auto elements = static_cast<std::size_t>(scene_.elements());
+    const auto elements = static_cast<std::size_t>(here_.elements());
     of_first_.sort_in(elements, acting_.size(), [&](std::size_t k) { return acting_[k].a; });
     of_second_.sort_in(elements, acting_.size(), [&](std::size_t k) { return acting_[k].b; });
   }
 
   LinkLaw law_;
-  Topology scene_;
+  Topology scene_, here_;      // here: what this process has of the scene
+  bool has_head_ = true;       // the last memory has one
   bool waits_ = false;         // for the time at which its links are placed
   double element_length_ = 0;  // nm; all types of a scene have the same
   double stiffness_ = 0;
-  std::vector<Link> links_;        // that hold
+  std::vector<Link> links_;        // that hold, by numbers of the scene, in the order of their first elements
   std::vector<TermEvent> events_;  // that nobody has written yet
   bool placed_ = false;
   double last_formed_ = 0;           // ps
   long begun_ = 0;                   // links that advance() has yet to count
   double given_ = 0;                 // eV, that links formed with; likewise
-  std::vector<ActingLink> acting_;   // in the order of the links
-  std::vector<LinkAction> actions_;  // of each of them
+  std::vector<ActingLink> acting_;   // acting ones, in the order of the links
+  std::vector<LinkAction> actions_;  // action of each of them
   Rows of_first_, of_second_;        // acting links by a and by b
 };
 
 }  // namespace
 
 std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology, const State& state,
-                                    const std::vector<std::pair<int, int>>& pairs, std::uint32_t step) {
+                                    const std::vector<std::pair<int, int>>& pairs) {
   std::vector<LinkPlace> links;
   for (const auto& [i, j] : pairs) {
     const Axis a = axis_at(topology, state, i), b = axis_at(topology, state, j);
@@ -503,25 +621,9 @@ std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology
     faces(a, b, s, law.reach, facing);
     facing.on_b = std::clamp(facing.on_b, -b.half, b.half);
     facing.to_b = b.centre + facing.on_b * b.along - a.centre - s * a.along;
-    links.push_back(place_of(law, state, i, j, a, b, s, facing));
+    links.push_back(link_at(law, state, i, j, a, b, s, facing));
   }
-  if (!(law.density > 0 || law.at_ends > 0)) return links;
-  const CellGrid grid(state.position, 2 * topology.largest_radius() + law.reach + topology.longest_element());
-  std::vector<int> found, near;
-  for (int i = 0; i < topology.elements(); ++i) {
-    const int tube = topology.tube_of(i);
-    const bool end = i == topology.tube_begin[static_cast<std::size_t>(tube)] ||
-                     i + 1 == topology.tube_begin[static_cast<std::size_t>(tube) + 1];
-    if (!(law.density > 0) && !end) continue;
-    const std::size_t count = grid.find(i, end && law.at_ends > 0 ? -1 : i, found);
-    near.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
-    std::sort(near.begin(), near.end());
-    for (const int j : near)
-      if (law.density > 0 && j > i && is_linked(law, topology, i, j) && stands_for_images(topology, i, j))
-        choose(law, topology, state, i, j, law.density, step,
-               [&](LinkPlace place) { links.push_back(std::move(place)); });
-    if (end && law.at_ends > 0 && !topology.is_image(i)) choose_at_end(law, topology, state, i, near, step, links);
-  }
+  for (LinkPlace& link : chosen_links(law, {topology, topology}, state, 0)) links.push_back(std::move(link));
   return links;
 }
 

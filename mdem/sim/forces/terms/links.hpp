@@ -41,7 +41,7 @@ struct LinkLaw {
   double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
   std::uint64_t lineage = 0;  // of the links that form while the scene moves: see lineage_key()
-  TypePairs types;            // of tubes whose contacts get links
+  TypePairs types;            // types of tubes whose contacts get links
 };
 
 // Where a link holds: elements of the scene, and its points and normals in their frames.
@@ -51,10 +51,9 @@ struct LinkPlace {
 };
 
 // The links of a state. `pairs` of elements that links must join are taken as they are, at the point where they are
-// nearest to each other; the others are chosen by the law. `step`: other random numbers for other steps; 0: at the
-// start.
+// nearest to each other; the others are chosen by the law.
 std::vector<LinkPlace> placed_links(const LinkLaw& law, const Topology& topology, const State& state,
-                                    const std::vector<std::pair<int, int>>& pairs, std::uint32_t step = 0);
+                                    const std::vector<std::pair<int, int>>& pairs);
 
 std::shared_ptr<const ForceTerm> link_term(const LinkLaw& law, std::vector<LinkPlace> at_start,
                                            const Topology& scene);

@@ -79,7 +79,7 @@ TEST(Failure, BreaksATubeAtItsWeakestBondOnce) {
   EXPECT_EQ(now.strands(), 1);
   const std::vector<TermEvent> events = m.simulation.term_events();
   ASSERT_EQ(events.size(), 1u);
-  EXPECT_STREQ(events[0].what, "tube broke");
+  EXPECT_EQ(events[0].what, "tube broke");
   EXPECT_EQ(events[0].a + 1, now.tube_begin[1]);
   EXPECT_EQ(events[0].b, now.tube_begin[1]);
 }

@@ -401,7 +401,7 @@ CaseResult run(const CaseContext& context) {
   const ReferenceTable pairs = reference(
       context, set, "pair-slide", pair_fresh_tolerance, [&] { return slide_pairs(context, set); }, result);
   const Bounds bounds = bounds_of(set);
-  // From a valley of the corrugation to its mean, in every contact over its whole length.
+  // Energy from a valley of the corrugation to its mean, in every contact over its whole length.
   const double registry = 0.5 * contacts * corrugation_of(pairs) * whole_length(set);
   std::vector<Series> all;
   for (const Grips& grips : {glued, sliding}) {

@@ -25,7 +25,7 @@ std::string twist_input(const Potential& potential, const std::string& data, con
          fmt::format("print \"$(pe:%.15g)\" append {}.dat screen no\n", results);
 }
 
-// From rest to the collapse; for chiral tubes in either sense.
+// Shears from rest to the collapse; for chiral tubes in either sense.
 std::vector<double> shears(Chirality c) {
   std::vector<double> list;
   for (double wanted = first_shear; wanted < last_shear + 0.5 * shear_step; wanted += shear_step) {

@@ -38,7 +38,7 @@ double best_radius(const ParameterSet& set, double from, double to) {
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
-  const double adhesion = -surface_integral(oracle).parallel_well().energy,
+  const double adhesion = -pair_well(oracle).energy,
                length = elements * oracle.element_length;
   const double bend = oracle.bond.bend, bent = length - oracle.element_length;  // bonds are one less
   const auto energy = [&](double r) {

@@ -65,7 +65,7 @@ double charge_inside(const LineContact& law, double radius, double rate, double 
 
 CaseResult run(const CaseContext& context) {
   const LineContact law = line_contact_of(context.model());
-  const Well pair = surface_integral(context.set()).parallel_well();
+  const Well pair = pair_well(context.set());
   const double radius = ring_radius * pair.distance;
   CaseResult result;
   std::vector<double> angles, charges, counts;

@@ -99,7 +99,7 @@ Pulled pulled(const ParameterSet& set, int overlap, bool may_break) {
 CaseResult run(const CaseContext& context) {
   CaseResult result;
   const CaseTube tube = context.tube();
-  const double cohesion = -surface_integral(tube.set).parallel_well().energy, in_pN = 1000 * units::eV_in_nN_nm,
+  const double cohesion = -pair_well(tube.set).energy, in_pN = 1000 * units::eV_in_nN_nm,
                q = friction / in_pN, a = tube.set.element_length, slid = 0.5 * (seen_from + way);
   const auto theory = [&](double overlap, double strength) { return cohesion + strength * overlap; };
   std::vector<double> lengths, smooth, rough;

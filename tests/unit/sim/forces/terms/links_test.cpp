@@ -135,8 +135,8 @@ TEST(Links, BreakAtTheirStrengthAndTheAccountStaysClosed) {
   const std::vector<TermEvent> events = s.term_events();
   ASSERT_EQ(static_cast<double>(events.size()), account.begun + account.events);
   for (std::size_t k = 1; k < events.size(); ++k) EXPECT_GE(events[k].time, events[k - 1].time);
-  EXPECT_STREQ(events.front().what, "link formed");
-  EXPECT_STREQ(events.back().what, "link broke");
+  EXPECT_EQ(events.front().what, "link formed");
+  EXPECT_EQ(events.back().what, "link broke");
   EXPECT_GT(events.back().time, 0);
   const std::string csv = events_csv(p.topology, events);
   EXPECT_THAT(csv, HasSubstr(",link broke,"));
