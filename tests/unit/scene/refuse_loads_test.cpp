@@ -55,7 +55,8 @@ TEST(RefuseLoads, LetsStandWhatActsOnSomething) {
         twist + "application = \"tangential\"\n" + fix("\"ends\"", "axes = \"x\"\nrotation = false\n"),
         couple + fix("[-1]", "axes = \"xyz\"\nrotation = false\n"), force + fix("[-1]", "axes = \"yz\"\n"),
         couple + clamp("upper", "about_z = \"free\"\n"), couple + clamp("upper", "spin_free = true\n"),
-        couple + rotate + "spin_free = true\n", force + clamp("lower"), force + clamp("upper", "tubes = [0, 3]\n"), fix("[0]") + rotate})
+        couple + rotate + "spin_free = true\n", force + clamp("lower"),
+        force + clamp("upper", "tubes = [0, 3]\n"), fix("[0]") + rotate})
     EXPECT_EQ(refused(felt), "") << felt;
 }
 
