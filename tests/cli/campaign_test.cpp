@@ -245,6 +245,12 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
                             "-o b.svg --x nothing"})
     EXPECT_EQ(run(std::string("picture d ") + wrong).code, 2) << wrong;
   EXPECT_FALSE(fs::exists(dir / "b.svg"));
+  EXPECT_EQ(svg.find("beyond "), std::string::npos) << "no limit was passed";
+  spit(dir / "far.toml", text + "frames_every_ps = 2\n[limits]\ntwist_deg = 0.2\n");
+  ASSERT_EQ(run("run far.toml --out far --quiet").code, 7) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("picture far -o far.svg --curves torque_upper_nN_nm --x rotation_deg").code, 0);
+  const std::string far = slurp(dir / "far.svg");
+  for (const char* part : {">beyond twist_deg<", " beyond\" d="}) EXPECT_NE(far.find(part), std::string::npos) << part;
 }
 
 // A tube that is turned by an angle bears GJ angle/L: long tubes do not pass what short ones pass.
