@@ -66,6 +66,7 @@ void put_provenance(ParameterSet& set, const std::string& key, const std::string
 
 int pull_command(const PullArguments& a) {
   ParameterSet set = read_parameters(find_parameters(a.set, "", {"", 0, "set"}));
+  refuse_filament(set, "there is nothing to pull", "give its strength in [failure] strain, up to validity.stretch");
   if (!set.anharmonic)
     throw InputError({set.path, 0, "bond.anharmonic"}, "is missing, where the pull begins",
                      "take a set that ropewalk calibrate made with --potential tersoff");

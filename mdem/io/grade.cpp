@@ -222,8 +222,11 @@ void grade_line(const ParameterSet& set, Grade& grade) {
 
 // What any slender body must have. Values of another unit, or of ten times the size, lie outside for most.
 void grade_filament(const ParameterSet& set, Grade& grade) {
-  add(grade, Level::limited, "a filament without a lattice: nothing here was held to atoms, its numbers are as good as its "
-                             "sources");
+  add(grade, Level::limited,
+      "a filament without a lattice: nothing here was held to atoms, its numbers are as good as its sources");
+  if (const double off = line_fit_error(set); off > known_well)
+    add(grade, off > unusable_contact ? Level::unfit : Level::limited,
+        fmt::format("the contact is off by up to {:.2g} % of the well of its table", 100 * off));
   const double u_per_nm3_in_g_per_cm3 = units::atomic_mass_kg * 1e24;
   const double density = set.mass_per_length / units::atomic_mass / (units::pi * set.radius * set.radius);
   within({{"mass_per_length over pi contact_radius^2 (g/cm^3)", density * u_per_nm3_in_g_per_cm3, 0.1, 25},

@@ -202,6 +202,20 @@ TEST(Grade, TheScenesWarningsNameALossByCutoffAndUnlikeTubes) {
   EXPECT_NE(warnings(scene)[0].find("Q_delaunay needs no distance"), std::string::npos);
 }
 
+// Atoms stand behind no number of a filament, and units are all that can be held to anything.
+TEST(Grade, OfAFilamentIsLimitedAndSeesWrongUnits) {
+  for (const char* name : {"cellulose-36", "f-actin"}) {
+    const Grade grade = grade_of(shipped(name));
+    EXPECT_EQ(grade.level, Grade::Level::limited) << name;
+    EXPECT_EQ(grade.words().find("is a number or a unit wrong"), std::string::npos) << grade.words();
+  }
+  ParameterSet heavy = shipped("f-actin"), thick = shipped("f-actin");
+  heavy.mass_per_length *= 100;
+  EXPECT_NE(grade_of(heavy).words().find("mass_per_length over pi contact_radius^2"), std::string::npos);
+  thick.bond.bend *= 100;
+  EXPECT_NE(grade_of(thick).words().find("sqrt(EI/EA) over contact_radius"), std::string::npos);
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

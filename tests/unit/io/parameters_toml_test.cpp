@@ -192,6 +192,96 @@ TEST(MeasuredText, HasAsManyDigitsAsTheErrorAllows) {
   EXPECT_EQ(measured_text(1814.42, 4756), "1814 ± 4756") << "an error that exceeds a value does not hide it";
 }
 
+// --- sets of filaments, without a lattice
+
+const std::string filament_text = read_file(ROPEWALK_SOURCE_DIR "/data/parameters/cellulose-36.toml");
+
+// The shipped filament with `old` replaced, or with lines behind a header; what the reader says of it.
+std::string said_of_filament(const std::string& old, const std::string& by) {
+  std::string text = filament_text;
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  text.replace(at, old.size(), by);
+  try {
+    parameters_of_text(text, "set.toml");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(FilamentSet, HasTheMassOfItsFileAndOneLimitOfTwist) {
+  const ParameterSet set = parameters_of_text(filament_text, "set.toml");
+  ASSERT_TRUE(set.filament);
+  EXPECT_FALSE(set.chirality.valid());
+  EXPECT_EQ(tube_name(set), "cellulose-36");
+  // 36 chains, two units of 162.14 u on 1.038 nm.
+  EXPECT_NEAR(set.element_mass(2) * units::mass_unit_kg / (2 * 36 * 2 / 1.038 * 162.14 * units::atomic_mass_kg), 1, 1e-5);
+  EXPECT_EQ(set.validity.collapse_at(set.radius, 0), set.validity.twist_collapse);
+  EXPECT_EQ(set.validity.collapse_at(set.radius, 50), set.validity.twist_collapse);
+}
+
+TEST(FilamentSet, IsWrittenAsItIsRead) {
+  const ParameterSet set = parameters_of_text(filament_text, "set.toml");
+  const std::string text = parameters_text(set, "");
+  const ParameterSet again = parameters_of_text(text, "set.toml");
+  EXPECT_TRUE(again.filament);
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("chirality")));
+  EXPECT_EQ(again.element_mass(1), set.element_mass(1));
+  ASSERT_EQ(again.quantities.size(), set.quantities.size());
+  for (std::size_t k = 0; k < set.quantities.size(); ++k) {
+    EXPECT_EQ(again.quantities[k].key, set.quantities[k].key);
+    EXPECT_EQ(again.quantities[k].value, set.quantities[k].value) << set.quantities[k].key;
+  }
+}
+
+TEST(FilamentSet, RefusesWhatOnlyATubeHas) {
+  const auto behind = [](const std::string& head, const std::string& lines) {
+    return said_of_filament(head + "\n", head + "\n" + lines + "\n");
+  };
+  EXPECT_THAT(behind("[meta]", "chirality = [5, 5]"), HasSubstr("chirality: is that of a tube"));
+  EXPECT_THAT(behind("[contact.line]", "sigma = 0.34"), HasSubstr("sigma: is of the atoms of a carbon tube"));
+  EXPECT_THAT(said_of_filament("[validity]", "[atomistic]\n[validity]"), HasSubstr("atomistic: is of the lattice"));
+  EXPECT_THAT(said_of_filament("[validity]", "[bond.anharmonic]\n[validity]"), HasSubstr("anharmonic: is of the wall"));
+  EXPECT_THAT(said_of_filament("[filament]", "[tube]\n[filament]"), HasSubstr("tube: is that of a carbon tube"));
+  EXPECT_THAT(behind("[validity]", "endless_collapse = 1"), HasSubstr("endless_collapse: is of the wall"));
+}
+
+TEST(FilamentSet, SaysWhatBondsCannotHave) {
+  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\ntwist_per_length = 0.1\n"),
+              HasSubstr("twist_per_length: is not in the model"));
+  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\ncurvature = 0.1\n"), HasSubstr("curvature: is not in the model"));
+  const std::string unit = ", unit = \"nN nm^2\", standard_error = 0, origin = \"chosen\" }\n";
+  EXPECT_THAT(said_of_filament("[bond]\n", "[bond]\nEI_1 = { value = 2" + unit + "EI_2 = { value = 6" + unit),
+              HasSubstr("= 3 nN nm^2"));
+  EXPECT_THAT(said_of_filament("[bond]\n", "[bond]\nEI_2 = { value = 2" + unit), HasSubstr("EI_2: is one of two"));
+}
+
+TEST(FilamentSet, WhoseWellIsNotThatOfItsLawIsRefused) {
+  EXPECT_THAT(said_of_filament("pair_energy      = { value = -0.035", "pair_energy      = { value = -0.045"),
+              HasSubstr("pair_energy: is -0.045"));
+  EXPECT_THAT(said_of_filament("pair_spacing     = { value = 3.9", "pair_spacing     = { value = 4.9"),
+              HasSubstr("pair_spacing: is 4.9"));
+}
+
+TEST(FilamentSet, IsWhatASetWithoutChiralityIsPointedTo) {
+  std::string text = read_file(path);
+  text.erase(text.find("chirality"), text.find('\n', text.find("chirality")) - text.find("chirality"));
+  try {
+    parameters_of_text(text, "set.toml");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("what has no lattice of carbon has [filament] in place of [tube]"));
+  }
+}
+
+// Potentials of carbon say nothing of a filament.
+TEST(FilamentSet, HasNoErrorBetweenPotentialsOfCarbon) {
+  const ParameterSet set = parameters_of_text(filament_text, "set.toml");
+  EXPECT_THAT(measured_text(*find_quantity(set, "bond.EA")), ::testing::Not(HasSubstr("potential")));
+  EXPECT_THAT(measured_text(*find_quantity(read_parameters(path), "bond.EA")), HasSubstr("potential"));
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

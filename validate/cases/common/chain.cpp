@@ -98,4 +98,26 @@ double zero_between(const std::function<double(double)>& falling, double low, do
   return 0.5 * (low + high);
 }
 
+namespace {
+
+// Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
+// Motions in one plane suffice.
+double lowest_under_load(const ParameterSet& set, int bonds, double load) {
+  Chain c(set, bonds);
+  const double shortened = set.element_length * (1 - load / set.bond.stretch);
+  std::vector<int> freedoms;
+  for (int i = 0; i <= bonds; ++i) {
+    c.state.position.set(static_cast<std::size_t>(i), {0, 0, i * shortened});
+    if (i > 0 && i < bonds) freedoms.push_back(6 * i);
+    freedoms.push_back(6 * i + 4);
+  }
+  return lowest_eigenvalue(tangent_stiffness(set.bond, set.element_length, c.state, freedoms));
+}
+
+}  // namespace
+
+double buckling_load(const ParameterSet& set, int bonds, double expected) {
+  return zero_between([&](double p) { return lowest_under_load(set, bonds, p); }, 0.5 * expected, 2.5 * expected);
+}
+
 }  // namespace ropewalk::validate

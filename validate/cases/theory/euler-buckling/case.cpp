@@ -6,20 +6,6 @@
 namespace ropewalk::validate::euler_buckling {
 namespace {
 
-// Lowest eigenvalue of a straight chain, shortened by the load, whose ends stay on the axis and turn freely.
-// Motions in one plane suffice.
-double lowest_under_load(const ParameterSet& set, int bonds, double load) {
-  Chain c(set, bonds);
-  const double shortened = set.element_length * (1 - load / set.bond.stretch);
-  std::vector<int> freedoms;
-  for (int i = 0; i <= bonds; ++i) {
-    c.state.position.set(static_cast<std::size_t>(i), {0, 0, i * shortened});
-    if (i > 0 && i < bonds) freedoms.push_back(6 * i);
-    freedoms.push_back(6 * i + 4);
-  }
-  return lowest_eigenvalue(tangent_stiffness(set.bond, set.element_length, c.state, freedoms));
-}
-
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const auto euler = [&](double length) { return std::pow(units::pi / length, 2) * oracle.bond.bend; };
@@ -27,8 +13,7 @@ CaseResult run(const CaseContext& context) {
   std::vector<double> lengths, loads;
   for (const int bonds : {16, 20, 24, 30, 40, 60}) {
     const double length = bonds * model.element_length, expected = euler(length);
-    const double load =
-        zero_between([&](double p) { return lowest_under_load(model, bonds, p); }, 0.5 * expected, 2.5 * expected);
+    const double load = buckling_load(model, bonds, expected);
     lengths.push_back(length);
     loads.push_back(load);
     if (bonds == 20 || bonds == 60)

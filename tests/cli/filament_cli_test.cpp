@@ -1,0 +1,78 @@
+// Filaments without a lattice, as a user meets them: a rope of them runs, and what needs atoms says so in one line.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "cli/support.hpp"
+
+namespace ropewalk {
+namespace {
+namespace UNIT {
+
+using test::Outcome;
+using test::slurp;
+using test::spit;
+using ::testing::HasSubstr;
+using ::testing::Not;
+namespace fs = test::fs;
+
+class Filament : public test::Cli {
+ protected:
+  void scene(const std::string& file, const std::string& parameters, const std::string& more = "") const {
+    spit(dir / file, fmt::format("format = \"ropewalk-scene-1\"\nname = \"f\"\nparameters = {}\n"
+                                 "[rope]\ntubes = 7\nlength_nm = 40\n{}\n[run]\nduration_ps = 20\n",
+                                 parameters, more));
+  }
+  void refuses(const std::string& command, const std::string& words) const {
+    const Outcome o = run(command);
+    EXPECT_EQ(o.code, 2) << command;
+    EXPECT_THAT(o.err, HasSubstr(words)) << command;
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  }
+};
+
+TEST_F(Filament, ARopeOfThemRunsAndIsReported) {
+  scene("a.toml", "\"cellulose-36\"");
+  ASSERT_EQ(run("run a.toml --out d --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const std::string page = slurp(dir / "d/report.html");
+  EXPECT_THAT(page, HasSubstr("cellulose-36"));
+  EXPECT_THAT(page, HasSubstr("a filament without a lattice"));
+  EXPECT_THAT(page, Not(HasSubstr("(0,0)")));
+  refuses("atoms d -o a.xyz", "filament: has no lattice of atoms");
+}
+
+TEST_F(Filament, EndsInLineKeepTheDistanceOfTheirContact) {
+  scene("ends.toml", "\"cellulose-36\"", "tube_length_nm = 20");
+  ASSERT_EQ(run("run ends.toml --out e --quiet").code, 0) << slurp(dir / "stderr.txt");
+}
+
+TEST_F(Filament, WhatNeedsALatticeSaysSo) {
+  scene("mixed.toml", "[\"cellulose-36\", \"f-actin\"]\ntube_types = [0, 0, 0, 0, 1, 1, 1]");
+  refuses("check mixed.toml", "a filament knows its like alone");
+  scene("friction.toml", "\"cellulose-36\"", "[[friction]]\nfrom = \"atoms\"");
+  refuses("check friction.toml", "no friction follows from it");
+  refuses("calibrate friction cellulose-36", "no friction follows from it");
+  refuses("calibrate pull f-actin", "there is nothing to pull");
+}
+
+TEST_F(Filament, ItsTableHasNoWallOfCarbon) {
+  const Outcome o = run("calibrate show cellulose-36 --table");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("contact_radius"));
+  EXPECT_THAT(o.out, Not(HasSubstr("0.335 nm")));
+  EXPECT_THAT(o.out, Not(HasSubstr("(potential)")));
+  ASSERT_EQ(run("compare cellulose-36 f-actin --page sets.html").code, 0) << slurp(dir / "stderr.txt");
+  EXPECT_THAT(slurp(dir / "sets.html"), HasSubstr("mass per length"));
+}
+
+TEST_F(Filament, CasesAgainstAtomsAreNotForIt) {
+  const Outcome o = run("validate run ring-energy tube-bend --parameters f-actin --out v --quiet");
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_THAT(slurp(dir / "v/tube-bend.json"), HasSubstr("a filament has no lattice"));
+  EXPECT_THAT(slurp(dir / "v/ring-energy.json"), HasSubstr("f-actin"));
+}
+
+}  // namespace UNIT
+}  // namespace
+}  // namespace ropewalk
