@@ -642,6 +642,17 @@ TEST_F(Campaign, StaticRestIsTheSameFromBothSides) {
   EXPECT_NE(run("rest warm.toml --static").err.find("thermostat: keeps the rope warm"), std::string::npos);
 }
 
+// Far beyond what the bonds carry statics has no state, which ends no search of other points.
+TEST_F(Campaign, StaticThresholdSaysWhereThereIsNoState) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 4\n"
+       "perturbation_nm = 0.01\n[twist]\nmoment_nN_nm = 2\nrate_nN_nm_per_ps = 4\n");
+  sweep_file("[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 1\nto = 40\ncolumn = \"beta_deg\"\nabove = 5\n");
+  const Outcome o = run("threshold s.toml --static");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("no state of rest at 40: "), std::string::npos) << o.out;
+}
+
 // A tube with free ends under couples of fixed direction: 8.987 EI/L (A. G. Greenhill, 1883).
 TEST_F(Campaign, StaticThresholdOfATubeIsGreenhills) {
   spit(dir / "tube.toml",
