@@ -112,7 +112,8 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "the steps themselves give or take energy", "take a shorter run.time_step_fs, or leave this key out", false,
        true},
       {"shock", "", 1, &Limits::shock, "the kinetic energy, over the energy of twist under the whole moment, is",
-       "the load is a blow, and where the rope ends depends on it", "ramp the moment more slowly", false, true},
+       "the load sets in like a shock, and the final state depends on that", "ramp the moment more slowly", false,
+       true},
   }};
   return kinds;
 }
