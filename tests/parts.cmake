@@ -27,6 +27,8 @@ if(NOT sanitize)
     Faults.DiskFullFromAnyCallOfAResume Faults.AnyCallOfARunFailsOnce Faults.SignalsInAnyCallAreOfNoConsequence
     Faults.SweepKilledAndGoneOnWith Faults.OtherVerbsKilledOrOutOfDisk Faults.RefinedRunKilledAndGoneOnWith
     Surroundings.AHostileRunDirectoryReachesNothingOutside Surroundings.AHostileCampaignReachesNothingOutside)
+  # The film of this suite has all that terms remember on ranks in every landing.
+  set(long_lammps LammpsEvents.TubesBreak* LammpsEvents.LinksOf* LammpsEvents.LinksForm*)
   set(long_scripts python.wheel install.Package docs.Tutorial/phase-diagram docs.Tutorial/tube docs.Gallery
     readers.Snakemake)
 else()

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "observe/time_mean.hpp"
+
 namespace ropewalk::calibrate {
 namespace {
 
 constexpr int windows_tried[] = {1, 2, 4, 8};
-constexpr long fewest_blocks = 16;
+constexpr long blocks = 16;  // of which the variance of a mean is taken
 
 // Variances and the covariance of stretch and twist.
 enum Moment { ss, tt, st, xx, yy, moments };
@@ -42,11 +44,41 @@ std::vector<Numbers> all_of(const Row& row, const std::vector<int>& windows, dou
   return out;
 }
 
-Row mean_of(const std::vector<Row>& rows, std::size_t from, std::size_t to) {
+// Means over all windows of each length of the products of a window's stretch, bends and twist.
+Row products(const std::vector<BondMotion>& moved, const std::vector<int>& bonds_of_chains,
+             const std::vector<int>& windows) {
+  Row row(windows.size(), Moments{});
+  for (std::size_t n = 0; n < windows.size(); ++n) {
+    const int w = windows[n];
+    double count = 0;
+    auto chain = moved.begin();
+    for (const int bonds : bonds_of_chains) {
+      for (int b = 0; b + w <= bonds; ++b, ++count) {
+        double s = 0, x = 0, y = 0, t = 0;
+        for (auto m = chain + b; m != chain + b + w; ++m) {
+          s += (*m)[2];
+          x += (*m)[3];
+          y += (*m)[4];
+          t += (*m)[5];
+        }
+        row[n][ss] += s * s;
+        row[n][tt] += t * t;
+        row[n][st] += s * t;
+        row[n][xx] += x * x;
+        row[n][yy] += y * y;
+      }
+      chain += bonds;
+    }
+    for (double& moment : row[n]) moment /= count;
+  }
+  return row;
+}
+
+Row mean_of(const std::vector<Row>& rows) {
   Row out(rows.front().size(), Moments{});
-  for (std::size_t f = from; f < to; ++f)
+  for (const Row& row : rows)
     for (std::size_t w = 0; w < out.size(); ++w)
-      for (std::size_t k = 0; k < moments; ++k) out[w][k] += rows[f][w][k] / static_cast<double>(to - from);
+      for (std::size_t k = 0; k < moments; ++k) out[w][k] += row[w][k] / static_cast<double>(rows.size());
   return out;
 }
 
@@ -77,90 +109,69 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
     longest = std::max(longest, bonds);
     out.bonds += bonds;
   }
-  if (frames_ < fewest_blocks) throw std::invalid_argument("fewer than 16 frames");
+  if (static_cast<double>(frames_) < least_independent) throw std::invalid_argument("fewer than 30 frames");
   if (longest < 2) throw std::invalid_argument("no chain has two bonds");
   const auto per_frame = static_cast<std::size_t>(out.bonds);
   const double kT = units::boltzmann * temperature;
 
-  BondMotion mean{};
-  for (const BondMotion& m : motions_)
-    for (std::size_t k = 0; k < 6; ++k) mean[k] += m[k] / static_cast<double>(motions_.size());
+  // A bond's own mean: bonds near free ends, and those of a tube that is bent at rest, are unlike others.
+  std::vector<BondMotion> mean(per_frame, BondMotion{});
+  for (std::size_t m = 0; m < motions_.size(); ++m)
+    for (std::size_t k = 0; k < 6; ++k) mean[m % per_frame][k] += motions_[m][k] / static_cast<double>(frames_);
   // Windows that fit at least twice into the longest chain.
   std::vector<int> windows;
   for (const int w : windows_tried)
     if (w == 1 || 2 * w <= longest) windows.push_back(w);
 
   std::vector<Row> rows;
-  for (long f = 0; f < frames_; ++f) {
-    Row row(windows.size(), Moments{});
-    for (std::size_t n = 0; n < windows.size(); ++n) {
-      const int w = windows[n];
-      double count = 0;
-      std::size_t begin = static_cast<std::size_t>(f) * per_frame;
-      for (const int bonds : bonds_) {
-        for (int b = 0; b + w <= bonds; ++b, ++count) {
-          double s = -w * mean[2], x = -w * mean[3], y = -w * mean[4], t = -w * mean[5];
-          for (int k = 0; k < w; ++k) {
-            const BondMotion& m = motions_[begin + static_cast<std::size_t>(b + k)];
-            s += m[2];
-            x += m[3];
-            y += m[4];
-            t += m[5];
-          }
-          row[n][ss] += s * s;
-          row[n][tt] += t * t;
-          row[n][st] += s * t;
-          row[n][xx] += x * x;
-          row[n][yy] += y * y;
-        }
-        begin += static_cast<std::size_t>(bonds);
-      }
-      for (double& moment : row[n]) moment /= count;
-    }
-    rows.push_back(row);
+  std::vector<BondMotion> moved(per_frame);
+  for (std::size_t f = 0; f < static_cast<std::size_t>(frames_); ++f) {
+    for (std::size_t b = 0; b < per_frame; ++b)
+      for (std::size_t k = 0; k < 6; ++k) moved[b][k] = motions_[f * per_frame + b][k] - mean[b][k];
+    rows.push_back(products(moved, bonds_, windows));
   }
+  // A mean over the time moves as well: what that takes off the variances, by the means of sixteenths of the time.
+  Row of_means(windows.size(), Moments{});
+  const auto block = static_cast<std::size_t>(frames_ / blocks);
+  for (std::size_t f = 0; f < block * blocks; f += block) {
+    for (std::size_t b = 0; b < per_frame; ++b)
+      for (std::size_t k = 0; k < 6; ++k) {
+        moved[b][k] = -mean[b][k];
+        for (std::size_t g = f; g < f + block; ++g)
+          moved[b][k] += motions_[g * per_frame + b][k] / static_cast<double>(block);
+      }
+    const Row of_block = products(moved, bonds_, windows);
+    for (std::size_t w = 0; w < windows.size(); ++w)
+      for (std::size_t k = 0; k < moments; ++k) of_means[w][k] += of_block[w][k] / blocks;
+  }
+  for (Row& row : rows)
+    for (std::size_t w = 0; w < windows.size(); ++w)
+      for (std::size_t k = 0; k < moments; ++k) row[w][k] += of_means[w][k] / (blocks - 1);
 
-  const Row all = mean_of(rows, 0, rows.size());
+  const Row all = mean_of(rows);
   const std::vector<Numbers> found = all_of(all, windows, element_length_, kT);
-  std::vector<Numbers> error(found.size(), Numbers{});
-  for (long size = 1; frames_ / size >= fewest_blocks; size *= 2) {
-    const long blocks = frames_ / size;
-    std::vector<Numbers> sum(found.size(), Numbers{}), square = sum;
-    const Row kept = mean_of(rows, 0, static_cast<std::size_t>(blocks * size));
-    for (long b = 0; b < blocks; ++b) {
-      const Row block = mean_of(rows, static_cast<std::size_t>(b * size), static_cast<std::size_t>((b + 1) * size));
-      Row without = kept;
-      for (std::size_t w = 0; w < without.size(); ++w)
-        for (std::size_t k = 0; k < moments; ++k)
-          without[w][k] += (kept[w][k] - block[w][k]) / static_cast<double>(blocks - 1);
-      const std::vector<Numbers> left = all_of(without, windows, element_length_, kT);
-      for (std::size_t n = 0; n < left.size(); ++n) {
-        const auto add = [&](double Numbers::*which) {
-          sum[n].*which += left[n].*which;
-          square[n].*which += left[n].*which * left[n].*which;
-        };
-        for (double Numbers::*which :
-             {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling})
-          add(which);
-      }
-    }
-    const auto n_blocks = static_cast<double>(blocks);
-    for (std::size_t n = 0; n < error.size(); ++n)
-      for (double Numbers::*which :
-           {&Numbers::EA, &Numbers::EI_x, &Numbers::EI_y, &Numbers::GJ, &Numbers::coupling}) {
-        const double spread = square[n].*which / n_blocks - std::pow(sum[n].*which / n_blocks, 2);
-        error[n].*which = std::max(error[n].*which, std::sqrt(std::max(0.0, (n_blocks - 1) * spread)));
-      }
+  // What each frame adds to each number: by leaving it out.
+  std::vector<std::vector<Numbers>> without;
+  const auto n = static_cast<double>(frames_);
+  for (const Row& row : rows) {
+    Row left = all;
+    for (std::size_t w = 0; w < left.size(); ++w)
+      for (std::size_t k = 0; k < moments; ++k) left[w][k] += (all[w][k] - row[w][k]) / (n - 1);
+    without.push_back(all_of(left, windows, element_length_, kT));
   }
-  for (std::size_t n = 0; n < found.size(); ++n) {
-    RodStiffness k;
-    k.window = n < windows.size() ? windows[n] : 0;
-    k.EA = {found[n].EA, error[n].EA};
-    k.EI_x = {found[n].EI_x, error[n].EI_x};
-    k.EI_y = {found[n].EI_y, error[n].EI_y};
-    k.GJ = {found[n].GJ, error[n].GJ};
-    k.coupling = {found[n].coupling, error[n].coupling};
-    if (n < windows.size())
+  std::vector<double> parts(rows.size());
+  const auto measured = [&](std::size_t window, double Numbers::*which) {
+    for (std::size_t f = 0; f < rows.size(); ++f)
+      parts[f] = found[window].*which + (n - 1) * (found[window].*which - without[f][window].*which);
+    const TimeMean mean = time_mean(parts);
+    out.frames_needed = std::max(out.frames_needed, mean.rows_needed);
+    return Measured{found[window].*which, mean.error};
+  };
+  for (std::size_t w = 0; w < found.size(); ++w) {
+    const RodStiffness k{w < windows.size() ? windows[w] : 0, measured(w, &Numbers::EA),
+                         measured(w, &Numbers::EI_x),         measured(w, &Numbers::EI_y),
+                         measured(w, &Numbers::GJ),           measured(w, &Numbers::coupling)};
+    if (w < windows.size())
       out.windows.push_back(k);
     else
       out.rod = k;
@@ -168,19 +179,21 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
   out.local = true;
   for (const RodStiffness& k : out.windows) {
     const auto agree = [](const Measured& x, const Measured& y) {
-      return std::fabs(x.value - y.value) < 3 * std::hypot(x.standard_error, y.standard_error);
+      return !(std::fabs(x.value - y.value) > 3 * std::hypot(x.standard_error, y.standard_error));
     };
     out.local = out.local && agree(k.EA, out.rod.EA) && agree(k.EI_x, out.rod.EI_x) &&
                 agree(k.EI_y, out.rod.EI_y) && agree(k.GJ, out.rod.GJ);
   }
-  // The covariance of the means of both halves of the time is free of noise, which they do not share.
+  // How far bonds lie apart at rest: the covariance of the means of both halves of the time is free of noise, which
+  // they do not share.
   const auto half = static_cast<std::size_t>(frames_ / 2);
   for (std::size_t k = 3; k < 6; ++k) {
-    double kept = 0, whole = 0;
+    double common = 0, kept = 0, whole = 0;
+    for (const BondMotion& m : mean) common += m[k] / static_cast<double>(per_frame);
     for (std::size_t b = 0; b < per_frame; ++b) {
       double one = 0, two = 0;
       for (std::size_t f = 0; f < 2 * half; ++f) {
-        const double x = motions_[f * per_frame + b][k] - mean[k];
+        const double x = motions_[f * per_frame + b][k] - common;
         (f < half ? one : two) += x / static_cast<double>(half);
         whole += x * x / static_cast<double>(2 * half);
       }

@@ -13,10 +13,10 @@
 // of the longest window and the shortest; the stiffness of each window stands beside it, and all agree where the
 // bond is local.
 //
-// Means over all bonds and frames are subtracted: bonds at rest are alike. What a bond keeps over all the time is
-// the static part: a rod that is bent or twisted at rest is no free one, and its variances are too large by that.
-// Standard errors: jackknife over blocks of frames, the largest of blocks of 1, 2, 4, ... frames of which there are
-// 16 or more. Units eV, nm, rad, K.
+// Variances are those about a bond's own mean over the time: atoms at a free end lie otherwise than those of the
+// middle, and a tube may be bent or twisted at rest. A mean of correlated frames moves too, with a variance that is
+// added again: the one of means over sixteenths of the time, over 16. Standard errors are those of time_mean(), of what each
+// frame adds to a stiffness (jackknife); nan where fewer than 30 frames are independent. Units eV, nm, rad, K.
 #pragma once
 
 #include <array>
@@ -40,8 +40,9 @@ struct RodStiffness {
 
 struct Fluctuation {
   std::vector<RodStiffness> windows;
-  RodStiffness rod;        // difference of the longest and the shortest window
-  double static_part = 0;  // fraction of a bond's variance, the largest of bends and twist
+  RodStiffness rod;          // difference of the longest and the shortest window
+  double static_part = 0;    // of a bond's mean square, the largest of bends and twist; left out
+  double frames_needed = 0;  // for all errors, where there are none; 0: all are known
   long frames = 0, bonds = 0;
   // Whether stiffnesses of all windows agree with those of `rod` within three standard errors.
   bool local = false;
@@ -57,7 +58,7 @@ class FluctuationSums {
   void end_frame() { ++frames_; }
   long frames() const { return frames_; }
 
-  // At `temperature` (K). Throws std::invalid_argument for fewer than 16 frames, or where no chain has two bonds.
+  // At `temperature` (K). Throws std::invalid_argument for fewer than 30 frames, or where no chain has two bonds.
   Fluctuation evaluate(double temperature) const;
 
  private:

@@ -11,6 +11,7 @@
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
 #include "io/parameters_toml.hpp"
+#include "observe/time_mean.hpp"
 #include "run/run_directory.hpp"
 #include "sim/dynamics/thermostat.hpp"
 #include "verbs/verbs.hpp"
@@ -19,7 +20,7 @@
 namespace ropewalk::calibrate {
 namespace {
 
-constexpr long fewest_frames = 16;
+constexpr auto fewest_frames = static_cast<long>(least_independent);
 constexpr double much_static = 0.1;
 
 // One number of the result, with that of a set.
@@ -77,6 +78,7 @@ std::vector<FluctuationSums> read_motion(const RunDirectory& dir, Scene& scene, 
 }
 
 std::string number(const Measured& m) {
+  if (!std::isfinite(m.standard_error)) return fmt::format("{:.5g} +- ?", m.value * in_nN);
   return fmt::format("{:.5g} +- {:.2g}", m.value * in_nN, m.standard_error * in_nN);
 }
 
@@ -99,10 +101,10 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
   for (const Line& line : lines) {
     const Quantity* q = find_quantity(against, line.key);
     const Measured& m = f.rod.*line.value;
-    fmt::print(" {:>20}", q && std::fabs(q->value) > 0.01 * m.standard_error * in_nN
-                              ? fmt::format("{:.3f} +- {:.2g}", m.value * in_nN / q->value,
-                                            std::fabs(m.standard_error * in_nN / q->value))
-                              : "-");
+    const bool known = q && std::fabs(q->value) > 0.01 * m.standard_error * in_nN;
+    fmt::print(" {:>20}", known ? fmt::format("{:.3f} +- {:.2g}", m.value * in_nN / q->value,
+                                              std::fabs(m.standard_error * in_nN / q->value))
+                                : "-");
   }
   fmt::print("\n");
   if (!f.local)
@@ -111,9 +113,15 @@ void print_result(const Fluctuation& f, const ParameterSet& against, double temp
         "or the time is too short. The row \"rod\" is free of what the ends of the pieces add\n");
   if (f.static_part > much_static)
     fmt::print(
-        "note: {:.0f} % of the variance of the bonds does not fluctuate in this time: either the tubes are bent or "
-        "twisted without any heat, or the time is too short. The stiffnesses are too small by as much\n",
+        "note: {:.0f} % of the mean square of bends or twist does not fluctuate in this time and is left out: the "
+        "tubes are bent or twisted without any heat. Where the time is too short for it, the stiffnesses are too "
+        "large\n",
         100 * f.static_part);
+  if (f.frames_needed > 0)
+    fmt::print(
+        "note: \"?\" stands where the motion is too slow for an error: fewer than {:.0f} frames are independent. "
+        "Take a run of {:.1f} times the length\n",
+        least_independent, f.frames_needed / static_cast<double>(f.frames));
 }
 
 nlohmann::ordered_json as_json(const Fluctuation& f, const ParameterSet& against, double temperature) {
@@ -138,6 +146,11 @@ ParameterSet with_stiffness(ParameterSet set, const Fluctuation& f, double tempe
                       0.5 * std::hypot(f.rod.EI_x.standard_error, f.rod.EI_y.standard_error)};
   const std::pair<const char*, Measured> numbers[] = {
       {"bond.EA", f.rod.EA}, {"bond.EI", bend}, {"bond.GJ", f.rod.GJ}, {"atomistic.coupling", f.rod.coupling}};
+  for (const auto& [key, m] : numbers)
+    if (!std::isfinite(m.standard_error))
+      throw InputError({a.run, 0, "--out"}, fmt::format("{} has no error: the motion is too slow for this time", key),
+                       fmt::format("take a run of {:.1f} times the length",
+                                   f.frames_needed / static_cast<double>(f.frames)));
   for (const auto& [key, m] : numbers)
     for (Quantity& q : set.quantities)
       if (q.key == key) {

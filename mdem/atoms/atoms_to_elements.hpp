@@ -48,7 +48,7 @@ class ElementFit {
                       std::size_t first) const;
   std::vector<SectionShape> shapes(const std::vector<Vector3>& positions, const State& state,
                                    std::size_t first) const;
-  // Distance (nm) of each atom from the place where the elements have it, in the order of atoms().
+  // Distance (nm) of each atom from the place that the elements imply for it, in the order of atoms().
   std::vector<double> misfits(const std::vector<Vector3>& positions, const State& state, std::size_t first) const;
   const std::vector<LabelledAtom>& atoms() const { return atoms_; }
 

@@ -7,14 +7,15 @@
 namespace ropewalk {
 
 TubeCurve::TubeCurve(const State& state, std::size_t first, int elements, double element_length,
-                     const TubeReference& reference)
-    : length_(element_length) {
+                     const TubeReference& reference, const std::vector<char>& broken)
+    : length_(element_length), radius_(reference.shape.radius) {
   for (std::size_t i = first; i + 1 < first + static_cast<std::size_t>(elements); ++i) {
     Bond b;
     b.from = state.position[i];
     b.to = state.position[i + 1];
     const double chord = (b.to - b.from).norm();
     b.start = state.orientation[i];
+    b.end = state.orientation[i + 1];
     Eigen::Quaterniond turn = b.start.conjugate() * state.orientation[i + 1];
     if (turn.w() < 0) turn.coeffs() = -turn.coeffs();  // the short way
     const Eigen::AngleAxisd by(turn);
@@ -23,6 +24,7 @@ TubeCurve::TubeCurve(const State& state, std::size_t first, int elements, double
     b.tangent_from = chord * axis_of(state.orientation[i]);
     b.tangent_to = chord * axis_of(state.orientation[i + 1]);
     b.radius = reference.shape.radius * (1 - reference.poisson * (chord / element_length - 1));
+    b.broken = !broken.empty() && broken[i] != 0;
     bonds_.push_back(b);
   }
   if (!bonds_.empty()) return;
@@ -42,6 +44,7 @@ TubeSection TubeCurve::at(double s) const {
   const int k = std::clamp(static_cast<int>(std::floor(along)), 0, last);
   const Bond& b = bonds_[static_cast<std::size_t>(k)];
   const double u = along - k, within = std::clamp(u, 0.0, 1.0);
+  if (b.broken) return at_break(static_cast<std::size_t>(k), u);
   TubeSection out;
   out.radius = b.radius;
   out.frame = (b.start * Eigen::AngleAxisd(within * b.turn, b.turn_axis)).toRotationMatrix();
@@ -53,14 +56,34 @@ TubeSection TubeCurve::at(double s) const {
   return out;
 }
 
+TubeSection TubeCurve::at_break(std::size_t k, double u) const {
+  const Bond& b = bonds_[k];
+  // Where both bonds of an element have broken, it stands alone, at rest.
+  const Bond* of_piece = nullptr;
+  if (u < 0.5 && k > 0 && !bonds_[k - 1].broken) of_piece = &bonds_[k - 1];
+  if (u >= 0.5 && k + 1 < bonds_.size() && !bonds_[k + 1].broken) of_piece = &bonds_[k + 1];
+  const double length = of_piece ? (of_piece->to - of_piece->from).norm() : length_;
+  TubeSection out;
+  out.radius = of_piece ? of_piece->radius : radius_;
+  const Eigen::Quaterniond& orientation = u < 0.5 ? b.start : b.end;
+  out.frame = orientation.toRotationMatrix();
+  out.centre = (u < 0.5 ? b.from : b.to) + (u < 0.5 ? u : u - 1) * length * axis_of(orientation);
+  return out;
+}
+
 long first_height(const TubeReference& reference, double element_length, int element) {
   // The slack keeps a site on a boundary in the element that begins there.
   return static_cast<long>(std::ceil(3 * element * element_length / reference.shape.length_per_hexagon - 1e-6));
 }
 
 AtomsOfElements::AtomsOfElements(const Topology& topology, const State& state,
-                                 std::vector<TubeReference> references, std::vector<TubePart> parts)
-    : topology_(topology), state_(state), references_(std::move(references)), parts_(std::move(parts)) {}
+                                 std::vector<TubeReference> references, std::vector<TubePart> parts,
+                                 std::vector<char> broken)
+    : topology_(topology),
+      state_(state),
+      references_(std::move(references)),
+      parts_(std::move(parts)),
+      broken_(std::move(broken)) {}
 
 const TubeReference& AtomsOfElements::reference_of_tube(int tube) const {
   return references_[static_cast<std::size_t>(topology_.tube_type[static_cast<std::size_t>(tube)])];
@@ -86,7 +109,7 @@ void AtomsOfElements::for_each(const std::function<void(const PlacedAtom&)>& vis
     const double a = topology_.type_of(part.tube).element_length;
     const TubeCurve curve(state_,
                           static_cast<std::size_t>(topology_.tube_begin[static_cast<std::size_t>(part.tube)]),
-                          topology_.length_of(part.tube), a, reference);
+                          topology_.length_of(part.tube), a, reference, broken_);
     const SiteRows rows(reference.chirality);
     PlacedAtom atom;
     atom.part = static_cast<int>(p);

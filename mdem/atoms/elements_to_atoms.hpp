@@ -9,7 +9,8 @@
 // and R turns at an even rate from one orientation to the next. Beyond the outermost centres r is straight and R
 // does not turn. nu is Poisson's ratio of the set, and the strain is that of the chord. Exact for uniform stretch
 // and twist; of a bend of curvature k, r is off an arc by less than k^3 a^4/384. Turn and shift of the lattice are
-// those of the body frames: site (0,0) has phi = 0 where the first element begins. Units nm, rad.
+// those of the body frames: site (0,0) has phi = 0 where the first element begins. Where a bond has broken, both
+// pieces end there as tubes do: half an element beyond their last centre, straight. Units nm, rad.
 #pragma once
 
 #include <functional>
@@ -29,9 +30,10 @@ struct TubeSection {
 // The centre line of a tube and its cross-sections.
 class TubeCurve {
  public:
-  // Elements first .. first + elements - 1 of a state.
+  // Elements first .. first + elements - 1 of a state. `broken`: of each element of the state, whether the bond behind
+  // it has broken; empty: none has.
   TubeCurve(const State& state, std::size_t first, int elements, double element_length,
-            const TubeReference& reference);
+            const TubeReference& reference, const std::vector<char>& broken = {});
 
   // At the height s (nm) of the tube at rest.
   TubeSection at(double s) const;
@@ -39,12 +41,17 @@ class TubeCurve {
  private:
   struct Bond {
     Vector3 from, to, tangent_from, tangent_to;  // nm; tangents scaled by the chord
-    Eigen::Quaterniond start;
+    Eigen::Quaterniond start, end;
     Vector3 turn_axis;  // axis in the body's frame
     double turn = 0;    // rad
     double radius = 0;  // nm
+    bool broken = false;
   };
+  // The straight end of a piece at the broken bond k, `u` of an element behind the centre before it.
+  TubeSection at_break(std::size_t k, double u) const;
+
   double length_;
+  double radius_;  // at rest, nm
   std::vector<Bond> bonds_;
 };
 
@@ -65,9 +72,10 @@ struct PlacedAtom {
 // The atoms of parts of the tubes of a state. Nothing is stored for an atom.
 class AtomsOfElements {
  public:
-  // `references`: of each tube type.
+  // `references`: of each tube type. `broken`: of each element, whether the bond behind it has broken; empty: none
+  // has.
   AtomsOfElements(const Topology& topology, const State& state, std::vector<TubeReference> references,
-                  std::vector<TubePart> parts);
+                  std::vector<TubePart> parts, std::vector<char> broken = {});
 
   const std::vector<TubePart>& parts() const { return parts_; }
   long count() const;
@@ -84,6 +92,7 @@ class AtomsOfElements {
   const State& state_;
   std::vector<TubeReference> references_;
   std::vector<TubePart> parts_;
+  std::vector<char> broken_;
 };
 
 }  // namespace ropewalk

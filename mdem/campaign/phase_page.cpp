@@ -214,8 +214,9 @@ std::string phase_page(const Sweep& sweep, const std::vector<PhasePoint>& points
     html += paragraph(escape_markup(
         "Theory: tubes that slide on each other against the viscosity of their contacts bend as one rod with the "
         "stiffness EI and the mass of one tube. Under couples of fixed direction on free ends a helix grows from "
-        "8.987 EI/L on each tube on, if one waits long enough. In the time of the scene the threshold is where the "
-        "growth during ramp and hold has made half of the initial wave as large as the question asks. The winding "
+        "8.987 EI/L on each tube on, if one waits long enough. The threshold for the time of the scene is the moment "
+        "at which half of the initial wave grows, during ramp and hold, to the size that the search asks for. The "
+        "winding "
         "is the measured turn of the rope over ML/EI: 1 for tubes without contact forces, less in a rope that "
         "stays packed. The turns of the helix are those of the helix that grows fastest. Glued tubes would need EI "
         "+ EA⟨ρ²⟩/2 in place of EI."));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "commands/commands.hpp"
 #include "exchange/atoms_of_state.hpp"
@@ -170,8 +171,11 @@ int atoms_command(const AtomsArguments& a) {
                                          : state_of_file(with_source(a), a.path);
   const std::vector<TubePart> parts = selected_parts(s, selection);
   const WrittenAtoms written = write_atoms_of(s, parts, a.out, a.potential);
-  fmt::print(a.json ? stderr : stdout, "{} written: {} atoms of {} tube{}, {}\n", fmt::join(written.files, ", "),
-             written.atoms, parts.size(), parts.size() == 1 ? "" : "s", s.title);
+  std::set<int> tubes;
+  for (const TubePart& part : parts) tubes.insert(part.tube);
+  fmt::print(a.json ? stderr : stdout, "{} written: {} atoms of {} tube{}{}, {}\n", fmt::join(written.files, ", "),
+             written.atoms, tubes.size(), tubes.size() == 1 ? "" : "s",
+             parts.size() == tubes.size() ? "" : fmt::format(" in {} pieces", parts.size()), s.title);
   if (!written.not_relaxable.empty() && format == AtomFormat::lammps_data)
     fmt::print(stderr, "note: no input of LAMMPS was written: {}\n", written.not_relaxable);
   if (!a.relax) return 0;

@@ -5,6 +5,7 @@
 
 #include "commands/commands.hpp"
 #include "io/files.hpp"
+#include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "model/error.hpp"
 #include "report/drawing.hpp"
@@ -52,6 +53,10 @@ int picture_command(const PictureArguments& a) {
   else
     write_drawing(a.out, svg, format.substr(1), format == ".png" ? a.zoom : 1, "-o");
   fmt::print("{} written\n", a.out);
+  const RunDirectory dir{a.dir};
+  if (!fs::exists(dir.limits())) return 0;
+  if (const std::string beyond = beyond_sentence(read_limits(dir.limits()).limits); !beyond.empty())
+    fmt::print("{}{}\n", beyond, a.curves.empty() ? "" : " Curves are dotted from there on.");
   return 0;
 }
 

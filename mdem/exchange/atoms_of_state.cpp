@@ -247,7 +247,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
 WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& parts, const std::string& path,
                             const std::string& potential) {
   const AtomFormat format = atom_format_of(path);
-  const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts);
+  const AtomsOfElements atoms(s.topology, s.state, references_of(s.sets), parts, s.broken);
   WrittenAtoms out;
   std::optional<AtomForces> forces;
   try {

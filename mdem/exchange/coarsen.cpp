@@ -91,7 +91,7 @@ constexpr std::array<OutputColumn, 15> columns_of_tubes = {{
     {"atoms_with_four_bonds", "", "atoms with four neighbours or more"},
     {"radius_nm", "nm", "mean radius"},
     {"misfit_nm", "nm",
-     "root mean square of the distance of atoms from the places where the elements have them"},
+     "root mean square of the distance between the atoms and the places that the elements imply for them"},
 }};
 
 std::string found_tubes_csv(const std::vector<CoarseTube>& tubes) {

@@ -43,10 +43,8 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
     raise(stretched < 0 ? pressed : out[strain], std::fabs(stretched), e);
     frame = next;
   }
-  const bool watched = pressed.limit > 0 && out[strain].limit > 0;
-  if (out[strain].element < 0 ||
-      (watched ? pressed.ratio() > out[strain].ratio() : pressed.value > out[strain].value))
-    out[strain] = pressed;
+  if (out[strain].element < 0 || pressed.is_beyond(out[strain]))
+    out[strain] = pressed, out[strain].pressed = true;
   return out;
 }
 
@@ -114,7 +112,8 @@ const std::array<LimitKind, limit_count>& limit_kinds() {
        "the steps themselves give or take energy", "take a shorter run.time_step_fs, or leave this key out", false,
        true},
       {"shock", "", 1, &Limits::shock, "the kinetic energy, over the energy of twist under the whole moment, is",
-       "the load is a blow, and where the rope ends depends on it", "ramp the moment more slowly", false, true},
+       "the load sets in like a shock, and the final state depends on that", "ramp the moment more slowly", false,
+       true},
   }};
   return kinds;
 }
@@ -153,7 +152,7 @@ Peak pressure_peak(const Topology& topology, const State& state, const Watched& 
   for (int t = 0; t < topology.tubes(); ++t) {
     const double limit = watched.limits[static_cast<std::size_t>(topology.tube_type[t])].pressure;
     const Peak here{all[static_cast<std::size_t>(t)], limit, topology.tube_begin[t] + topology.length_of(t) / 2};
-    if (out.element < 0 || here.value > out.value) out = here;
+    if (out.element < 0 || here.is_beyond(out)) out = here;
   }
   return out;
 }
@@ -183,9 +182,7 @@ Peaks peaks(const Topology& topology, const State& state, const NeighbourList& l
   Peaks out;
   for (const Peaks& tube : tubes)
     for (std::size_t k = 0; k < limit_count; ++k) {
-      const bool watched = tube[k].limit > 0 && out[k].limit > 0;
-      const bool more = watched ? tube[k].ratio() > out[k].ratio() : tube[k].value > out[k].value;
-      if (tube[k].element >= 0 && (out[k].element < 0 || more)) out[k] = tube[k];
+      if (tube[k].element >= 0 && (out[k].element < 0 || tube[k].is_beyond(out[k]))) out[k] = tube[k];
     }
   return out;
 }

@@ -84,9 +84,14 @@ struct Peak {
   double value = 0;
   double limit = 0;
   int element = -1;  // for a bond its first element; -1: no value
+  bool pressed = false;  // a strain below zero
 
   double ratio() const { return limit > 0 ? value / limit : 0; }
   bool passed() const { return ratio() > 1; }
+  // Each against its own limit, where both have one.
+  bool is_beyond(const Peak& other) const {
+    return limit > 0 && other.limit > 0 ? ratio() > other.ratio() : value > other.value;
+  }
 };
 using Peaks = std::array<Peak, limit_count>;  // one peak a limit, in the order of limit_kinds()
 

@@ -32,6 +32,11 @@ double curvature_aside(double aside, double length, double tension, double bend)
   return x > 0.01 ? 0.5 * aside * k * k / (x / std::tanh(x) - 1) : 6 * aside / (length * length);
 }
 
+// Curvature of a beam that has buckled in one wave, by the part of its length by which its ends have come nearer.
+double curvature_buckled(double shortened, double length, bool upright) {
+  return (upright ? 4 : 2) * units::pi / length * std::sqrt(shortened);
+}
+
 double helix(double radius, double winding) {
   const double slope = radius * winding;
   return slope * winding / (1 + slope * slope);
@@ -58,12 +63,16 @@ double rope_radius_of(const Prepared& p) {
 struct DemandsAhead::At {
   double winding = 0;
   double twist = 0;
-  double strain = 0;
+  Range strain;
   double tension = 0;
 };
 
 double DemandsAhead::Range::farthest(double more) const {
   return std::max(std::fabs(low + more), std::fabs(high + more));
+}
+
+DemandsAhead::Range DemandsAhead::Range::moved(double one, double other) const {
+  return {low + std::min(one, other), high + std::max(one, other)};
 }
 
 DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t type)
@@ -133,6 +142,14 @@ void DemandsAhead::read_start(const Scene& scene, const Prepared& p) {
     }
   }
   bent_ = std::max(0.0, bent_ - helix(rope_radius_, winding_));
+  constexpr double rounding = 1e-9;  // nm
+  straight_ = scene.start.temperature == 0 && !scene.bath();
+  for (int t = 0; t < tubes_ && straight_; ++t) {
+    const auto begin = static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(t)]);
+    const Vector3 first = p.state.position[begin];
+    for (std::size_t i = begin; i < begin + static_cast<std::size_t>(p.topology.length_of(t)); ++i)
+      straight_ = straight_ && (p.state.position[i] - first).head<2>().norm() < rounding;
+  }
 }
 
 double DemandsAhead::turned(double time) const {
@@ -168,7 +185,8 @@ void DemandsAhead::add(const At& what, Demands& out) const {
     curvature = std::max(curvature, std::fabs(slope) * std::sqrt(what.tension / bond_.bend));
   out.curvature = std::max(out.curvature, curvature);
   out.twist = std::max(out.twist, std::fabs(what.twist));
-  out.strain = std::max(out.strain, std::fabs(what.strain));
+  out.strain = std::max(out.strain, what.strain.high);
+  out.pressed = std::max(out.pressed, -what.strain.low);
   if (length_kept_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
 }
 
@@ -182,18 +200,19 @@ Demands DemandsAhead::at(double time) const {
   const double twist = twist_.farthest(more);
   const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
   double stretched = 0;  // extension by the way aside
+  double shortened = 0;  // beyond what a column bears
   if (length_kept_) {
     const double drawn = std::hypot(1 + drawn_apart_.value(time) / period_, aside / period_) - 1,
-                 along = 1 + (drawn < 0 && tubes_ > 0 ? std::max(drawn, -column_) : drawn);
+                 along = 1 + (straight_ && more == 0 && aside == 0 ? drawn : std::max(drawn, -column_));
     stretched = std::max(0.0, drawn);
+    shortened = std::max(0.0, -drawn - column_);
     const double outer = std::hypot(along, rope_radius_ * winding) / std::hypot(1, rope_radius_ * winding_) - 1;
-    const double strain = std::max(strain_.farthest(along - 1), strain_.farthest(outer));
-    add({winding, twist, strain, bond_.stretch * std::max(0.0, outer)}, out);
+    add({winding, twist, strain_.moved(along - 1, outer), bond_.stretch * std::max(0.0, outer)}, out);
   } else if (!begun) {
-    add({winding, twist, strain_.farthest(0), 0}, out);
+    add({winding, twist, strain_, 0}, out);
   } else {
-    add({winding, couple != 0 ? 0 : twist, pull != 0 ? law_.strain_under(pull, couple != 0 ? 0 : twist) : 0, pull},
-        out);
+    const double strain = pull != 0 ? law_.strain_under(pull, couple != 0 ? 0 : twist) : 0;
+    add({winding, couple != 0 ? 0 : twist, {strain, strain}, pull}, out);
   }
   if (couple != 0) {
     const double twisted = law_.twist_under(couple, 0),
@@ -201,9 +220,9 @@ Demands DemandsAhead::at(double time) const {
     // The rope as a whole winds no farther than by Hooke's law where its tubes give way.
     const double by_hooke = couple / bond_.twist,
                  winds = std::fabs(twisted) < std::fabs(by_hooke) ? twisted : by_hooke;
-    add({winds, twisted, strain, pull}, out);
+    add({winds, twisted, {strain, strain}, pull}, out);
     if (std::fabs(twisted) < law_.largest_twist())
-      add({winding_ + winds, twist_.farthest(twisted), strain, pull}, out);
+      add({winding_ + winds, twist_.farthest(twisted), {strain, strain}, pull}, out);
   }
   // What bends each tube beside the winding.
   double bent = 0, force = std::hypot(sideways(0, time), sideways(1, time));
@@ -212,9 +231,11 @@ Demands DemandsAhead::at(double time) const {
       if (is_moved(d.does, axis)) bent += std::fabs(d.does.axes[axis].course.value(time));
   if (!upright_) force = std::hypot(force, sideways(LoadEffect::z, time));
   out.curvature += bent / length_ + warm_curvature_ + bent_;
+  if (shortened > 0) out.curvature += curvature_buckled(shortened, length_, keeps_tilt_);
   if (keeps_tilt_ && aside > 0)
     out.curvature += curvature_aside(aside, length_, bond_.stretch * stretched, bond_.bend);
   out.strain += rope_radius_ * bent / length_;
+  out.pressed += rope_radius_ * bent / length_;
   out.twist += warm_twist_;
   if (const double moment = force * length_ + std::hypot(sideways(3, time), sideways(4, time)); begun && moment > 0)
     out.curvature += law_.curvature_under(moment);
@@ -228,6 +249,7 @@ Demands DemandsAhead::largest() const {
     out.curvature = std::max(out.curvature, now.curvature);
     out.twist = std::max(out.twist, now.twist);
     out.strain = std::max(out.strain, now.strain);
+    out.pressed = std::max(out.pressed, now.pressed);
     out.pressure = std::max(out.pressure, now.pressure);
   }
   return out;

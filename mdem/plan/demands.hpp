@@ -4,7 +4,9 @@
 // they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its own bonds
 // bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between what they were
 // and nothing, and the larger of both sums counts. Everything is even along the rope, and the rope as a whole winds
-// no farther than its tubes twist. These are upper estimates of motions without shocks.
+// no farther than its tubes twist. Ends that come nearer press the tubes up to the strain at which a column of the
+// rope's width buckles, and bend them from there on; tubes that begin straight and cold may stay straight, and are
+// pressed all the way as well. These are upper estimates of motions without shocks.
 #pragma once
 
 #include <array>
@@ -19,8 +21,8 @@ namespace ropewalk {
 // Largest values, without their signs.
 struct Demands {
   double curvature = 0, twist = 0;  // 1/nm, rad/nm
-  double strain = 0;
-  double pressure = 0;  // eV/nm^3, on the innermost tube
+  double strain = 0, pressed = 0;  // of the bond that is drawn out farthest, and of the one that is pressed most
+  double pressure = 0;             // eV/nm^3, on the innermost tube
 };
 
 class DemandsAhead {
@@ -36,6 +38,7 @@ class DemandsAhead {
   struct Range {
     double low = 0, high = 0;
     double farthest(double more) const;  // from zero, of both ends moved by `more`
+    Range moved(double one, double other) const;  // over all values between both moves
   };
   struct At;
 
@@ -54,7 +57,7 @@ class DemandsAhead {
   std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
   std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
-  bool length_kept_ = false, keeps_tilt_ = false, upright_ = true;
+  bool length_kept_ = false, keeps_tilt_ = false, upright_ = true, straight_ = true;
   int tubes_ = 0;
   double warm_curvature_ = 0, warm_twist_ = 0;
   // The start.

@@ -97,7 +97,7 @@ SceneFeatures features_of(const Scene& scene, const Prepared& p) {
   const Demands most = DemandsAhead(scene, p).largest();
   f.curvature = most.curvature;
   f.twist = most.twist;
-  f.strain = most.strain;
+  f.strain = std::max(most.strain, most.pressed);
   f.pressure = most.pressure;
   return f;
 }

@@ -22,6 +22,7 @@ double expected(const Demands& f, const TubeType& type, double Limits::*limit) {
   if (limit == &Limits::kink_curvature) return f.curvature;
   if (limit == &Limits::bend) return type.element_length * f.curvature;
   if (limit == &Limits::strain) return f.strain;
+  if (limit == &Limits::compression) return f.pressed;
   if (limit == &Limits::pressure) return f.pressure;
   return 0;
 }
@@ -110,6 +111,21 @@ Ahead ahead_of(const DemandsAhead& demands, const TubeType& type, double Limits:
   return out;
 }
 
+// Pressed bonds have a limit of their own.
+struct Asked {
+  const LimitKind* kind;
+  double Limits::*limit;
+};
+
+std::vector<Asked> all_asked() {
+  std::vector<Asked> out;
+  for (const LimitKind& kind : limit_kinds()) {
+    out.push_back({&kind, kind.limit});
+    if (kind.limit == &Limits::strain) out.push_back({&kind, &Limits::compression});
+  }
+  return out;
+}
+
 std::vector<std::size_t> types_with_tubes(const Topology& topology) {
   const std::set<int> all(topology.tube_type.begin(), topology.tube_type.end());
   return {all.begin(), all.end()};
@@ -123,26 +139,30 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   const std::vector<std::size_t> types = types_with_tubes(p.topology);
   std::vector<DemandsAhead> demands;
   for (const std::size_t type : types) demands.emplace_back(scene, p, type);
-  for (const LimitKind& kind : limit_kinds()) {
+  for (const auto& [asked, member] : all_asked()) {
+    const LimitKind& kind = *asked;
+    const auto limit_of = [&, own = member](const Limits& of) {
+      return own == &Limits::compression && of.*own == 0 ? of.strain : of.*own;
+    };
     // The type that the scene brings farthest beyond its limit.
     Ahead ahead;
     std::size_t type = types.front();
     for (std::size_t k = 0; k < types.size(); ++k) {
-      const double here = limits[types[k]].*kind.limit;
+      const double here = limit_of(limits[types[k]]);
       if (here <= 0 || kind.limit == &Limits::shock) continue;
-      const Ahead of_type = ahead_of(demands[k], p.topology.types[types[k]], kind.limit, here);
-      if (k > 0 && !(of_type.largest / here > ahead.largest / (limits[type].*kind.limit))) continue;
+      const Ahead of_type = ahead_of(demands[k], p.topology.types[types[k]], member, here);
+      if (k > 0 && !(of_type.largest / here > ahead.largest / limit_of(limits[type]))) continue;
       ahead = of_type;
       type = types[k];
     }
-    const double limit = limits[type].*kind.limit;
+    const double limit = limit_of(limits[type]), sign = member == &Limits::compression ? -1 : 1;
     if (limit <= 0) continue;
     const std::string what =
         types.size() > 1 ? fmt::format("{} of {}", kind.key, scene.sets[type].name) : std::string(kind.key);
     const std::string unit = *kind.unit ? " " + std::string(kind.unit) : "";
-    const auto number = [&](double value) { return fmt::format("{:.3g}{}", value / kind.unit_size, unit); };
+    const auto number = [&](double value) { return fmt::format("{:.3g}{}", sign * value / kind.unit_size, unit); };
     const std::string beyond =
-        fmt::format("beyond its limit of {:.3g}: {}", limit / kind.unit_size, kind.consequence);
+        fmt::format("beyond its limit of {:.3g}: {}", sign * limit / kind.unit_size, kind.consequence);
     if (kind.limit == &Limits::shock) {
       if (const double shock = expected_shock(scene, p); shock > limit)
         out.push_back(fmt::format("The load may bring {} to {}, {}; {}.", kind.key, number(shock), beyond,

@@ -31,7 +31,8 @@ AtomSelection selection_of(const std::vector<int>& tubes, std::optional<double> 
 py::tuple arrays_of(const AtomicState& s, const AtomSelection& selection) {
   std::vector<TubeReference> references;
   for (const ParameterSet& set : s.sets) references.push_back(reference_of(set));
-  const AtomsOfElements atoms(s.topology, s.state, std::move(references), selected_parts(s, selection));
+  const AtomsOfElements atoms(s.topology, s.state, std::move(references), selected_parts(s, selection),
+                              s.broken);
   const auto n = static_cast<py::ssize_t>(atoms.count());
   py::array_t<double> position({n, py::ssize_t(3)});
   py::array_t<std::int64_t> tube(n), element(n);

@@ -96,8 +96,8 @@ Panel equilibria(const ReportInput& in) {
 Panel tension(const std::vector<LogRow>& log) {
   return {
       "Tension",
-      "Force along z that pulls at either end, mean over the time between two rows. At the start clamps bear the "
-      "cohesion of the rope, which would shorten free tubes a little.",
+      "Force along z that pulls at either end, mean over the time between two rows. It is not zero at the "
+      "start: cohesion would shorten free tubes a little, and the clamps hold them.",
       {"tension", "nN", false},
       {{"upper", logged("tension_upper_nN"), 0}, {"lower", logged("tension_lower_nN"), 1}},
       false,
@@ -222,7 +222,7 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
              "the same distance from the axis; negative where tubes are drawn apart. Tension of the outer tubes "
              "presses the inner ones together. Twist also does the opposite: the section of a tube that leans is "
              "longer than wide, so that tubes around the axis need more room and draw the inner ones apart.") +
-         data_table(columns, "ropewalk observe RUN --tubes has that of every tube in the last frame.") +
+         data_table(columns, "ropewalk observe RUN --tubes has the pressure on every tube in the last frame.") +
          "</figure>\n";
 }
 

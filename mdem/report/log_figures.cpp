@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/run_results.hpp"
 #include "observe/observables.hpp"
 #include "report/page.hpp"
 
@@ -42,6 +43,17 @@ std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& va
   return values;
 }
 
+std::size_t mark_beyond(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits,
+                        const std::vector<double>& x, LineChart& chart) {
+  const std::size_t within = rows_within(log, limits);
+  if (within < x.size()) {
+    // A quantity that goes back and forth has no region of its own.
+    if (std::is_sorted(x.begin(), x.end())) chart.beyond = x[within];
+    chart.beyond_name = "beyond " + first_limit(limits)->key;
+  }
+  return within;
+}
+
 namespace {
 
 void take_first_off(std::vector<double>& values) {
@@ -72,12 +84,7 @@ LineChart chart_of(const ReportInput& in, const Panel& panel, const Clock& clock
   chart.y = panel.axis;
   if (clock.column == "time_ps") chart.bands = stages(in);
   const std::vector<double> x = values_of(in.log, logged(clock.column));
-  const std::size_t within = rows_within(in.log, in.watched.limits);
-  if (within < x.size()) {
-    // A quantity that goes back and forth has no region of its own.
-    if (std::is_sorted(x.begin(), x.end())) chart.beyond = x[within];
-    chart.beyond_name = "beyond " + in.results.first_limit;
-  }
+  const std::size_t within = mark_beyond(in.log, in.watched.limits, x, chart);
   for (const Trace& trace : panel.traces) {
     ChartLine line{trace.name, x, values_of(in.log, trace.value), trace.colour, trace.dashed, panel.steps};
     if (panel.since_start) take_first_off(line.y);

@@ -45,6 +45,11 @@ double error_of(const ReportInput& in, std::size_t row, const LogValue& value);
 double total_energy(const LogRow& r);  // eV
 std::vector<double> values_of(const std::vector<LogRow>& log, const LogValue& value);
 
+// Hatches the chart, whose horizontal axis has the values `x` of the rows, where the run is beyond a limit, and names
+// it. Returns the first row beyond; the size of the log: none is.
+std::size_t mark_beyond(const std::vector<LogRow>& log, const std::vector<LimitRecord>& limits,
+                        const std::vector<double>& x, LineChart& chart);
+
 // A <figure> with chart, caption and table.
 std::string log_figure(const ReportInput& in, const Panel& panel, Figures& figures);
 std::string not_drawn(const std::string& title);

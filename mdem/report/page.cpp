@@ -98,15 +98,16 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .facts tbody th{font-weight:600;padding-right:26px;white-space:nowrap}
 .facts td{overflow-wrap:anywhere}
 .facts td.number{overflow-wrap:normal}
-@media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}}
+@media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}
+.facts:not(.numbers) tbody th{white-space:normal;overflow-wrap:anywhere;padding-right:12px}}
 @page{margin:13mm 14mm}
-@media print{body{font-size:8.6pt;line-height:1.4}main{max-width:none;padding:0}
-p,ul,.warnings,figcaption{max-width:none}.lead{font-size:1em}a{color:inherit}
-h1{font-size:1.7rem}h2{font-size:1.15rem;margin:.7em 0 .4em;padding-top:.4em;break-after:avoid}h3{margin:0 0 .2em}
-figure,.pair figure{margin-bottom:.6em}figcaption{font-size:.9em;line-height:1.3}
+@media print{html{font-size:12px}body{font-size:8.6pt;line-height:1.35}main{max-width:none;padding:0}
+p,ul,.warnings,figcaption{max-width:none}.lead{font-size:1em}a{color:inherit}p{margin:.5em 0}
+h1{font-size:1.7rem;margin:0 0 .2em}h2{font-size:1.15rem;margin:.6em 0 .3em;padding-top:.4em;break-after:avoid}h3{margin:0 0 .2em}
+figure,.pair figure{margin-bottom:.5em}figcaption{font-size:.9em;line-height:1.25;margin-top:.2em}
 .pair{grid-template-columns:1fr 1fr;gap:0 18px}.pair svg{width:auto;max-width:100%;max-height:43mm}
-.views{display:grid;grid-template-columns:repeat(3,1fr);gap:6px 14px}.views svg{width:100%;height:auto}
-.row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto}
+.views{display:grid;grid-template-columns:repeat(3,1fr);gap:4px 14px;margin-bottom:6px}.views svg{width:100%;height:auto}
+.row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto;margin-bottom:2px}.keys{margin-top:6px}
 details{display:none}.scroll{overflow:visible}.wide svg{min-width:0}.numbers td,.numbers th{white-space:normal}
 table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1px 8px 1px 0}tr{break-inside:avoid}
 .columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}

@@ -55,9 +55,11 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
   chart.width = width;
   chart.height = chart_height;
   const std::vector<double> x = values_of(in.log, logged(over));
+  const std::size_t within = mark_beyond(in.log, in.limits, x, chart);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     chart.lines.push_back(
         {name_of(columns[k]), x, values_of(in.log, logged(columns[k])), static_cast<int>(k) % categorical_colours});
+    if (within < x.size()) chart.lines.back().beyond = within;
     if (!in.errors.empty()) chart.lines.back().error = values_of(in.errors, logged(columns[k]));
     scatter.labels.emplace_back();
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/limits_file.hpp"
 #include "io/log.hpp"
 #include "report/report.hpp"
 
@@ -16,6 +17,7 @@ struct PlateInput {
   RopeShells shells;
   double tube_radius = 0;
   std::vector<LogRow> log;
+  std::vector<LimitRecord> limits;  // of the run: curves are dotted from the first that it passed on
   std::vector<LogRow> errors;  // errors of its rows, drawn as bands; empty: not known
   // Charts below, each with one column or more of the same unit; empty: none.
   std::vector<std::vector<std::string>> curves;

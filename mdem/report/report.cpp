@@ -211,10 +211,11 @@ std::string radius_figure(const ReportInput& in, const std::vector<ReportSection
 
 // --- Pictures -----------------------------------------------------------------------------------------------
 
-// Short ropes stand side by side, a little smaller where that makes them fit.
+// Thick and short ropes stand side by side, a little smaller where that makes them fit: a reader wants the figures that
+// follow in sight.
 RopeCamera camera_for_page(const std::vector<RopeView>& views, double tube_radius) {
   constexpr double page = 1040, gap = 28;
-  RopeCamera camera = rope_camera(views, tube_radius, page);
+  RopeCamera camera = rope_camera(views, tube_radius, page, views.size() > 1 ? 160 : 300);
   for (const int columns : {2, 3, 4}) {
     const double column = (page - (columns - 1) * gap) / columns, width = camera.width * camera.scale;
     if (width > column && width < 1.25 * column) camera.scale = column / camera.width;
@@ -422,8 +423,8 @@ std::string passed_words(const LimitRecord& r) {
 std::string limits_part(const ReportInput& in) {
   if (in.log.empty()) return paragraph("The log has no rows, so nothing is known.");
   std::string html = paragraph(
-      "Bonds of the model stay elastic at any deformation, and real tubes do not. The bonds listed here are beyond "
-      "the limits of the parameter set: their forces are not those of tubes.");
+      "Bonds of the model stay elastic at any deformation, and real tubes do not. Forces of bonds beyond these limits "
+      "of the parameter set do not describe real tubes.");
   html += "<ul>\n";
   for (const Limit& limit : limits(in.validity)) html += limit_words(in, limit);
   double twist = 0;

@@ -16,11 +16,12 @@ std::string with_space(const std::string& unit) { return unit.empty() ? "" : " "
 // It ends with the heading of docs/limits.md, which `help` prints.
 std::string line_of(const LimitKind& kind, const std::string& place, const Peak& peak, double time,
                     bool may_refine) {
+  const double unit = peak.pressed ? -kind.unit_size : kind.unit_size;
   return fmt::format(
       "limit passed at {:.4g} ps{}{}: {} {:.4g}{}, beyond limits.{} = {:.4g}: {}; {}{}; see ropewalk "
       "help {}",
-      time, place.empty() ? "" : ", ", place, kind.what, peak.value / kind.unit_size, with_space(kind.unit),
-      kind.key, peak.limit / kind.unit_size, kind.consequence, kind.remedy,
+      time, place.empty() ? "" : ", ", place, kind.what, peak.value / unit, with_space(kind.unit),
+      kind.key, peak.limit / unit, kind.consequence, kind.remedy,
       kind.cured_by_finer && may_refine ? ", or --on-limit refine" : "", kind.key);
 }
 
@@ -65,7 +66,7 @@ std::vector<std::string> LimitWatch::check(const Topology& topology, const Topol
     const double value = peak.value / kind.unit_size;
     const bool first = peak.passed() && !r.passed;
     const bool none_yet = kind.whole ? r.limit == 0 && r.largest == 0 : r.element < 0;
-    if (none_yet || value > r.largest) {
+    if (none_yet || peak.is_beyond({r.largest * kind.unit_size, r.limit * kind.unit_size})) {
       r.limit = peak.limit / kind.unit_size;
       r.largest = value;
       r.largest_at_ps = state.time;

@@ -12,6 +12,7 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/kinds/rope.hpp"
+#include "scene/refuse_loads.hpp"
 #include "scene/refuse_state.hpp"
 #include "scene/scene_place.hpp"
 #include "scene/state_files.hpp"
@@ -276,6 +277,7 @@ Prepared prepare(Scene& scene) {
     drive->refuse_start(scene, out.topology, out.state, out.loads);
     drive->set_stepping(scene.lineage, out.stepping);
   }
+  refuse_loads(scene, out.topology, out.interaction, out.loads);
   for (const auto& load : out.loads) load->begin(out.topology, out.state);
   out.limit = time_step_limit(out.topology, out.interaction, out.spacing);
   out.time_step = chosen_step(scene, out.limit);

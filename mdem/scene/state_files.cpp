@@ -54,7 +54,7 @@ void check_counts(const StateMemory& memory, const Interaction& in) {
     if (here == 0) continue;
     if (memory.missing)
       throw InputError({memory.state_path, 0, ""},
-                       fmt::format("names {}, which is not there: the {} of the scene would begin without it",
+                       fmt::format("names {}, and there is no such file: the {} of the scene would lose its past",
                                    file_name(memory.path), name),
                        fmt::format("copy it too, from beside the state; {}", or_anew));
     if (here != there)

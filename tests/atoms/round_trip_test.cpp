@@ -69,6 +69,33 @@ TEST_P(RoundTrip, GivesTheElementsUpToTheLimitsOfTheSet) {
   }
 }
 
+// A tube whose bonds broke behind elements 2 and 3, its pieces drawn apart: each keeps its own atoms, and none lies
+// between.
+TEST(BrokenTube, HasNoAtomsWhereItBroke) {
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  Elements whole = rod(8, set.element_length, {0, 0, 0});
+  const TubeReference reference = reference_of(set);
+  const std::vector<TubePart> parts = {{0, 0, 3}, {0, 3, 4}, {0, 4, 8}};
+  const auto shift_of = [](int element) { return element < 3 ? 0.0 : element < 4 ? 2.0 : 5.0; };
+  std::vector<PlacedAtom> wanted;
+  AtomsOfElements(whole.topology, whole.state, {reference}, parts).for_each([&](PlacedAtom atom) {
+    atom.position.z() += shift_of(atom.element);
+    wanted.push_back(atom);
+  });
+  for (int e = 3; e < 8; ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    whole.state.position.set(i, whole.state.position[i] + Vector3(0, 0, shift_of(e)));
+  }
+  std::size_t at = 0;
+  AtomsOfElements(whole.topology, whole.state, {reference}, parts, {0, 0, 1, 1, 0, 0, 0, 0})
+      .for_each([&](const PlacedAtom& atom) {
+        ASSERT_LT(at, wanted.size());
+        EXPECT_LT((atom.position - wanted[at].position).norm(), 1e-9) << "element " << atom.element;
+        ++at;
+      });
+  EXPECT_EQ(at, wanted.size());
+}
+
 INSTANTIATE_TEST_SUITE_P(Sets, RoundTrip,
                          ::testing::Values("cnt-5-5-tersoff", "cnt-10-10-tersoff", "cnt-17-0-tersoff",
                                            "cnt-12-6-tersoff", "cnt-8-2-tersoff"));

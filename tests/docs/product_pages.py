@@ -69,7 +69,7 @@ def report_of_a_run(browser, program, folder):
 
 
 def demo_on_paper(browser, program, repository, folder):
-    """The report of the demo's scene, with fewer tubes, has at most seven pages of paper."""
+    """The report of the demo's scene, with fewer tubes, has at most six pages of paper."""
     text = (repository / "data/scenes/rope-67nm.toml").read_text()
     pages.expect("\ntubes = 91 " in text, "rope-67nm.toml has other tubes")
     (folder / "demo.toml").write_text(text.replace("\ntubes = 91 ", "\ntubes = 19 "))
@@ -79,7 +79,7 @@ def demo_on_paper(browser, program, repository, folder):
     browser.open((folder / "demo/report.html").as_uri())
     printed = browser.call("Page.printToPDF", paperWidth=8.27, paperHeight=11.69, preferCSSPageSize=True)["data"]
     sheets = len(re.findall(rb"/Type\s*/Page\b", base64.b64decode(printed)))
-    pages.expect(1 < sheets <= 7, f"demo/report.html takes {sheets} pages of paper")
+    pages.expect(1 < sheets <= 6, f"demo/report.html takes {sheets} pages of paper")
 
 
 def chart_points(browser, repository):

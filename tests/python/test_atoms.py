@@ -64,6 +64,20 @@ class AtomsTest(FolderTest):
         with self.assertRaisesRegex(ropewalk.InputError, "there is no tube 7"):
             ropewalk.atoms(frame, tubes=[7])
 
+    def test_no_atoms_bridge_a_break(self):
+        scene = ropewalk.Scene({
+            "parameters": "cnt-5-5-tersoff", "rope": {"tubes": 7, "length_nm": 12}, "failure": {"strain": 0.02},
+            "grip": [{"end": "lower"}, {"end": "upper", "z": {"displacement_nm": [[0, 0], [4, 2]]}}],
+            "run": {"duration_ps": 5, "frames_every_ps": 5}})
+        frame = ropewalk.run(scene, "pulled").frames[-1]
+        simulation = ropewalk.Simulation(scene)
+        simulation.step_until(frame.time_ps)
+        for of in (frame, simulation):
+            found = ropewalk.atoms(of)
+            for tube in range(7):
+                heights = np.sort(found.position[found.tube == tube, 2])
+                self.assertGreater(np.diff(heights).max(), 1, "nm")
+
     def test_files_become_a_run(self):
         ropewalk.programs._call(["atoms", "run", "-o", "rope.data"])
         coarse = ropewalk.coarsen("rope.data", "coarse")

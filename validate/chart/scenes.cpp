@@ -295,7 +295,7 @@ std::vector<ChartScene> all_scenes() {
       {"rope91-strong",
        "91 tubes of 41 nm, strongly twisted",
        fmt::format("The same rope turned by {:.0f} degrees in 60 ps, {:.2g} rad/nm, and held for 20. Turned by 200 "
-                   "degrees its rim folds at the discs, and no model holds.",
+                   "degrees, its rim folds at the discs: no model here describes that.",
                    strong_angle / units::degree, strong_angle / rope_length),
        true,
        {"energy", "beta", "spacing", "end_moment", "bending_moment", "Q"},

@@ -100,9 +100,11 @@ using forms::line_node;
 
 // Nodes per element, spaced by at most 0.4 sqrt(R0 g0), R0 the distance and g0 the gap of two parallel tubes at
 // rest: along the axes u is as wide as sqrt(R0 g0). Keeps the corrugation below 2.5e-4 of the well at rest and
-// below 6e-3 of it where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain.
-inline int line_nodes(double length, double pair_spacing, double contact) {
-  const double spacing = 0.4 * std::sqrt(pair_spacing * (pair_spacing - contact));
+// below 6e-3 of it where tubes are pressed 0.05 nm closer, for r = 0.2 .. 1.4 nm and any axial strain. For
+// statics 0.25: a tube slides along others without a stiffness of its own, so that even such a corrugation makes many
+// states of rest of one.
+inline int line_nodes(double length, double pair_spacing, double contact, bool for_statics = false) {
+  const double spacing = (for_statics ? 0.25 : 0.4) * std::sqrt(pair_spacing * (pair_spacing - contact));
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
 }
 

@@ -1,5 +1,7 @@
 #include "run/pages/run_plate.hpp"
 
+#include <filesystem>
+
 #include "io/numeric_errors.hpp"
 #include "report/plate.hpp"
 #include "run/pages/colour_fields.hpp"
@@ -15,6 +17,7 @@ PlateInput plate_of(const RunDirectory& dir, const PlateOptions& o) {
   in.tube_radius = prepared.topology.largest_radius();
   in.shells = observer.shells;
   in.log = read_log(dir.log());
+  if (std::filesystem::exists(dir.limits())) in.limits = read_limits(dir.limits()).limits;
   if (!o.curves.empty()) in.errors = rows_of_errors(dir.path, in.log);
   in.curves = o.curves;
   in.x = o.x;

@@ -196,7 +196,13 @@ class TetherDrive : public Drive {
   TetherEnd on(const Topology& topology, const TypedEnd& typed) const {
     TetherEnd end;
     end.centre = typed.point;
-    for (const int e : typed.elements) end.elements.push_back(element_of_tube(topology, typed.tube, e, place));
+    for (const int e : typed.elements) {
+      const int element = element_of_tube(topology, typed.tube, e, place);
+      if (std::find(end.elements.begin(), end.elements.end(), element) != end.elements.end())
+        throw InputError(place, fmt::format("{} is an element of tube {} that is named already", e, typed.tube),
+                         "name each once");
+      end.elements.push_back(element);
+    }
     return end;
   }
 };

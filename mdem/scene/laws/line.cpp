@@ -62,6 +62,8 @@ struct LinePairs {
 };
 
 LinePairs line_pairs(const Scene& scene) {
+  const bool statics =
+      scene.run.mode == RunOptions::Mode::relax && scene.run.solver != RunOptions::Solver::fire;
   const std::size_t types = scene.sets.size();
   const double length = scene.element_length;
   LinePairs out;
@@ -71,7 +73,7 @@ LinePairs line_pairs(const Scene& scene) {
     // A cutoff that leaves no well is refused by the reader.
     out.wells.push_back(line_parallel_well(densities[k]));
     const double rest = out.wells.back().distance, contact = densities[k].contact;
-    const int needed = rest > contact ? line_nodes(length, rest, contact) : 1;
+    const int needed = rest > contact ? line_nodes(length, rest, contact, statics) : 1;
     nodes[k / types] = std::max(nodes[k / types], scene.contact.nodes > 0 ? scene.contact.nodes : needed);
   }
   for (std::size_t k = 0; k < densities.size(); ++k)

@@ -13,7 +13,7 @@ namespace ropewalk {
 namespace {
 
 // As measured; docs/performance.md.
-constexpr double first_steps = 20, next_steps = 8, products_of_step = 60, solves_of_modes = 130;
+constexpr double first_steps = 20, next_steps = 8, products_of_step = 30, solves_of_modes = 130;
 constexpr double sparse_copies = 9;       // of K, for the modes
 constexpr double bytes_per_second = 4e9;  // of a decomposition that is read again for each solution
 

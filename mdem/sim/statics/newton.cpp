@@ -19,6 +19,7 @@ constexpr int most_tries = 25;             // tries of one step
 constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
 constexpr double nearly_free = 0.1;        // 1/ps: with a smaller shift only soft motions are held back
 constexpr double fire_until = 0.05;        // eV/nm: smaller forces are those of contacts that have formed
+constexpr double most_widened = 8;         // times NewtonOptions::farthest
 constexpr long fire_steps = 300;           // after which Newton's method has a turn
 
 VectorXd forces_of(const Simulation& s) {
@@ -27,6 +28,14 @@ VectorXd forces_of(const Simulation& s) {
     f.segment<6>(6 * static_cast<Eigen::Index>(i)) << s.forces().force[i], s.forces().torque[i];
   return f;
 }
+
+// A part of a step that was solved for.
+struct Attempt {
+  double scale = 1;
+  double first = 0, end = 0, by_model = 0;  // eV: work of the force before it, after it, and after it by the tangent
+  bool taken = false;
+  double disagreement() const { return std::fabs(end - by_model) / std::fabs(first); }
+};
 
 double energy_of(const Simulation& s) { return s.forces().energy.potential() - s.account().work; }
 
@@ -111,7 +120,7 @@ Solution NewtonStatics::solve(const At& at, double shift, const VectorXd& b, dou
     z += (stretch.dot(r) / stiffness) * stretch;
   };
   const Solution found = out_.symmetric ? conjugate_gradients(a, m, b, tolerance, most_products, x)
-                                        : bicgstab(a, m, b, tolerance, most_products, x);
+                                        : gmres(a, m, b, tolerance, most_products, x);
   out_.products += found.iterations;
   return found;
 }
@@ -371,33 +380,50 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       }
       if (done() >= max_steps || out_.newton_steps >= options_.most) return end_by(Statics::End::out_of_steps);
       if (tries == 0 && !progress(done())) return end_by(Statics::End::interrupted);
-      const double far = farthest(d), scale = far > options_.farthest ? options_.farthest / far : 1.0;
       const Simulation before = s_;
-      const bool fine = move(scale * d);
-      VectorXd left = forces_of(s_);
-      AllowedMotions(s_).project_force(left);
-      const double end = scale * left.dot(d), first = scale * gain;
-      // The energy of a slice is known by the work of its forces alone: energies count the images too.
-      const double change = is_slice() ? -0.5 * (first + end) : energy_of(s_) - at.energy,
-                   noise = 1e-10 * std::fabs(at.energy) + 1e-12;
-      if (!fine || !(change < -1e-4 * first + noise) || !(end > -1.5 * std::fabs(first) - 1e-9)) {
+      const auto attempt = [&](double scale) {
+        Attempt out;
+        out.scale = scale;
+        const bool fine = move(scale * d);
+        VectorXd left = forces_of(s_);
+        AllowedMotions(s_).project_force(left);
+        out.end = scale * left.dot(d);
+        out.first = scale * gain;
+        // The energy of a slice is known by the work of its forces alone: energies count the images too.
+        const double change = is_slice() ? -0.5 * (out.first + out.end) : energy_of(s_) - at.energy,
+                     noise = 1e-10 * std::fabs(at.energy) + 1e-12;
+        out.by_model = scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
+        out.taken =
+            fine && change < -1e-4 * out.first + noise && out.end > -1.5 * std::fabs(out.first) - 1e-9;
+        return out;
+      };
+      const double far = farthest(d);
+      Attempt step = attempt(far > options_.farthest ? options_.farthest / far : 1.0);
+      if (!step.taken) {
         ++out_.refused;
         s_ = before;
         pace = &s_.relaxation_with(goal);
         pace->rate = std::max(2 * pace->rate, 0.02);
         continue;
       }
+      // Where forces agree with the model, as of tubes that slide far along others, one direction is good for more.
+      while (step.scale < 1 && step.disagreement() < 0.05 && step.scale * far < most_widened * options_.farthest) {
+        Simulation there = s_;
+        s_ = before;
+        const Attempt wider = attempt(std::min(1.0, 2 * step.scale));
+        if (!wider.taken || wider.disagreement() > 0.1) {
+          s_ = std::move(there);
+          break;
+        }
+        step = wider;
+      }
       moved_on = true;
       ++out_.newton_steps;
       pace = &s_.relaxation_with(goal);
-      // The force that the model leaves along the step, against the one that is there.
-      const double by_model =
-          scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
-      const double disagreement = std::fabs(end - by_model) / std::fabs(first);
       // What is left of forces at rest is rounding, which no model foresees.
-      if ((disagreement < 0.3 && scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
+      if ((step.disagreement() < 0.3 && step.scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
         pace->rate = std::max(options_.least_rate, pace->rate / 3);
-      else if (end - by_model < -0.7 * std::fabs(first))
+      else if (step.end - step.by_model < -0.7 * std::fabs(step.first))
         pace->rate *= 2;
       if (pace->falling > 0 && pace->rate < 1.3 * pace->falling) {
         pace->rate = 1.3 * pace->falling;

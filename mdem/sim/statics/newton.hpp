@@ -4,8 +4,8 @@
 //
 // with the tangent of stiffness.hpp. A large s is damped dynamics with short steps, s = 0 Newton's method. Where
 // K + s M is not positive, s rises: a state that is no minimum is left along the motions that grow. No element goes
-// farther than some tenths of its radius in a step, a step must lower the energy less the work of the loads, and s
-// follows from how well the forces afterwards agree with the model. C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal.
+// farther than some tenths of its radius in a step, or as far as the forces agree with the model there; a step must
+// lower the energy less the work of the loads, and s follows from how well the forces afterwards agree. C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal.
 // 35, 508 (1998), DOI 10.1137/S0036142996304796.
 //
 // A state that rests is pushed once more: by conjugate gradients for random forces, which have a part in every
@@ -33,7 +33,7 @@ struct NewtonOptions {
   int most = 1000;    // steps of Newton's method; no state of rest that was met needed a fifth of them
   // Steps with a bond beyond its window, one after the other, after which it ends; 0: any number.
   int most_overloaded = 0;
-  double farthest = 0.15;  // nm, of an element in a step; turns at the radius
+  double farthest = 0.15;  // nm, of an element in a first try of a step; turns at the radius
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count

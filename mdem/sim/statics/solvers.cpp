@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/Jacobi>
 #include <algorithm>
 #include <cmath>
 
@@ -166,8 +167,10 @@ std::vector<Vector3> centres_of(const State& state, const std::vector<int>& of, 
 
 }  // namespace
 
-// Moves of each part along three axes, its turn about the rope's axis, and tilts of its elements in place: tubes
-// slide along one another, so that sections do not stay plane. Moves and turns of whole sections are sums of these.
+// Moves of each part along three axes, its turn about the rope's axis, tilts of its elements in place, and their
+// tilts as helices whose pitch changes: tubes slide along one another, so that sections do not stay plane. Moves and
+// turns of whole sections are sums of these. Without the last one a change of twist would shear the tubes, a
+// thousand times stiffer than it bends them.
 void Preconditioner::find_section_motions(const State& state, const std::vector<char>& held) {
   const auto count = static_cast<std::size_t>(sections_.count);
   const std::vector<Vector3> centre = centres_of(state, sections_.of, sections_.count),
@@ -182,9 +185,10 @@ void Preconditioner::find_section_motions(const State& state, const std::vector<
   for (std::size_t i = 0; i < state.size(); ++i) {
     const Eigen::Matrix3d& f = frame[static_cast<std::size_t>(sections_.of[i])];
     const Vector3 arm = state.position[i] - middle[static_cast<std::size_t>(sections_.part[i])];
-    Block z = Block::Zero();
-    z.topLeftCorner<3, 3>() = z.bottomRightCorner<3, 3>() = f;
+    Motions z = Motions::Zero();
+    z.block<3, 3>(0, 0) = z.block<3, 3>(3, 3) = f;
     z.block<3, 1>(0, 5) = f.col(2).cross(arm);
+    z.block<3, 1>(3, 6) = f.col(2).cross(z.block<3, 1>(0, 5));
     for (int c = 0; c < 6; ++c)
       if (held[6 * i + static_cast<std::size_t>(c)]) z.row(c).setZero();
     motion_[i] = z;
@@ -197,23 +201,25 @@ void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& ma
   for (int i = 0; i < k.rows(); ++i)
     for (int at = k.begin[static_cast<std::size_t>(i)]; at < k.begin[static_cast<std::size_t>(i) + 1]; ++at)
       reach = std::max(reach, std::abs(section(i) - section(k.column[static_cast<std::size_t>(at)])));
-  const int n = 6 * sections_.parts(), width = 6 * (reach + 1);
+  constexpr int m = motions;
+  using Small = Eigen::Matrix<double, m, m>;
+  const int n = m * sections_.parts(), width = m * (reach + 1);
   band_ = Eigen::MatrixXd::Zero(width, n);
-  const auto add = [&](int row_section, int column_section, const Block& b) {
-    for (int c = 0; c < 6; ++c)
-      for (int r = 0; r < 6; ++r)
-        if (const int row = 6 * row_section + r, column = 6 * column_section + c; row >= column)
+  const auto add = [&](int row_section, int column_section, const Small& b) {
+    for (int c = 0; c < m; ++c)
+      for (int r = 0; r < m; ++r)
+        if (const int row = m * row_section + r, column = m * column_section + c; row >= column)
           band_(row - column, column) += b(r, c);
   };
   for (int i = 0; i < k.rows(); ++i) {
     const auto a = static_cast<std::size_t>(i);
     Block d = symmetric_part(k.diagonal[a]);
     d.diagonal() += shift * mass.segment<6>(6 * static_cast<Eigen::Index>(i));
-    const Block z = motion_[a].transpose();
+    const Eigen::Matrix<double, m, 6> z = motion_[a].transpose();
     add(section(i), section(i), z * (d * motion_[a]));
     for (int at = k.begin[a]; at < k.begin[a + 1]; ++at) {
       const int j = k.column[static_cast<std::size_t>(at)];
-      const Block b = z * (k.block[static_cast<std::size_t>(at)] * motion_[static_cast<std::size_t>(j)]);
+      const Small b = z * (k.block[static_cast<std::size_t>(at)] * motion_[static_cast<std::size_t>(j)]);
       if (section(i) == section(j)) {
         add(section(i), section(i), b + b.transpose());
       } else if (section(i) > section(j)) {
@@ -241,7 +247,7 @@ void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {
   const auto n = static_cast<int>(band_.cols()), width = static_cast<int>(band_.rows());
   VectorXd b = VectorXd::Zero(n);
   for (std::size_t i = 0; i < motion_.size(); ++i)
-    b.segment<6>(6 * sections_.part[i]).noalias() +=
+    b.segment<motions>(motions * sections_.part[i]).noalias() +=
         motion_[i].transpose() * r.segment<6>(6 * static_cast<Eigen::Index>(i));
   for (int j = 0; j < n; ++j) {
     b[j] /= band_(0, j);
@@ -253,7 +259,8 @@ void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {
     b[j] = sum / band_(0, j);
   }
   for (std::size_t i = 0; i < motion_.size(); ++i)
-    z.segment<6>(6 * static_cast<Eigen::Index>(i)).noalias() += motion_[i] * b.segment<6>(6 * sections_.part[i]);
+    z.segment<6>(6 * static_cast<Eigen::Index>(i)).noalias() +=
+        motion_[i] * b.segment<motions>(motions * sections_.part[i]);
 }
 
 void Preconditioner::solve(const VectorXd& r, VectorXd& z) const {
@@ -296,37 +303,55 @@ Solution conjugate_gradients(const Operator& a, const Precondition& m, const Vec
   return out;
 }
 
-Solution bicgstab(const Operator& a, const Precondition& m, const VectorXd& b, double tolerance, int most,
-                  VectorXd& x) {
+// Arnoldi's vectors are orthonormal in the norm of the approximate inverse M, v_i' M v_j. What is left is then
+// measured as conjugate gradients do, and not by the forces of the stiffest motions.
+Solution gmres(const Operator& a, const Precondition& m, const VectorXd& b, double tolerance, int most, VectorXd& x) {
+  constexpr int most_vectors = 80;  // after which it begins again
   Solution out;
   x = VectorXd::Zero(b.size());
-  const double norm = b.norm();
+  VectorXd r = b, z, w;
+  m(r, z);
+  const double norm = std::sqrt(r.dot(z));
   if (!(norm > 0)) return out;
-  VectorXd r = b, p = b, v, s, t, z, y;
-  double rho = b.dot(r);
-  while (out.iterations < most) {
-    m(p, y);
-    a(y, v);
-    ++out.iterations;
-    const double alpha = rho / b.dot(v);
-    s = r - alpha * v;
-    out.residual = s.norm() / norm;
-    if (!std::isfinite(out.residual)) break;
-    if (out.residual < tolerance) {
-      x += alpha * y;
-      break;
+  out.residual = 1;
+  while (out.iterations < most && out.residual >= tolerance) {
+    const double size = std::sqrt(std::fabs(r.dot(z)));
+    std::vector<VectorXd> forces{r / size}, moves{z / size};
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(most_vectors + 1, most_vectors);
+    VectorXd left = VectorXd::Zero(most_vectors + 1);
+    left[0] = size;
+    std::vector<Eigen::JacobiRotation<double>> turns;
+    int k = 0;
+    for (bool done = false; !done && k < most_vectors && out.iterations < most; ++k) {
+      a(moves.back(), w);
+      ++out.iterations;
+      for (int pass = 0; pass < 2; ++pass)
+        for (int i = 0; i <= k; ++i) {
+          const double part = moves[static_cast<std::size_t>(i)].dot(w);
+          h(i, k) += part;
+          w -= part * forces[static_cast<std::size_t>(i)];
+        }
+      m(w, z);
+      const double next = std::sqrt(std::max(0.0, w.dot(z)));
+      h(k + 1, k) = next;
+      for (int i = 0; i < k; ++i)
+        h.col(k).applyOnTheLeft(i, i + 1, turns[static_cast<std::size_t>(i)].adjoint());
+      turns.emplace_back();
+      turns.back().makeGivens(h(k, k), h(k + 1, k));
+      h.col(k).applyOnTheLeft(k, k + 1, turns.back().adjoint());
+      left.applyOnTheLeft(k, k + 1, turns.back().adjoint());
+      out.residual = std::fabs(left[k + 1]) / norm;
+      done = out.residual < tolerance || !(next > 0);
+      if (done) continue;
+      forces.push_back(w / next);
+      moves.push_back(z / next);
     }
-    m(s, z);
-    a(z, t);
-    ++out.iterations;
-    const double omega = t.dot(s) / t.squaredNorm();
-    x += alpha * y + omega * z;
-    r = s - omega * t;
-    out.residual = r.norm() / norm;
-    if (out.residual < tolerance || !std::isfinite(out.residual)) break;
-    const double next = b.dot(r), beta = next / rho * alpha / omega;
-    p = r + beta * (p - omega * v);
-    rho = next;
+    const VectorXd parts = h.topLeftCorner(k, k).triangularView<Eigen::Upper>().solve(left.head(k));
+    for (int i = 0; i < k; ++i) x += parts[i] * moves[static_cast<std::size_t>(i)];
+    if (!std::isfinite(out.residual) || !x.allFinite()) break;
+    a(x, w);
+    r = b - w;
+    m(r, z);
   }
   out.falls = !(b.dot(x) > 0);
   return out;

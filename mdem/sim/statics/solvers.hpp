@@ -1,8 +1,8 @@
-// Linear systems (K + s M) x = b of ropes: conjugate gradients where K is symmetric, BiCGSTAB where it is not, with
-// each tube's chain of bonds solved exactly and, in a rope, its sections as rigid bodies for what reaches far.
+// Linear systems (K + s M) x = b of ropes: conjugate gradients where K is symmetric, GMRES where it is not, with
+// each tube's chain of bonds solved exactly and, in a rope, motions of its sections for what reaches far.
 //
-// M. R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044; H. A. van der
-// Vorst, SIAM J. Sci. Stat. Comput. 13, 631 (1992), DOI 10.1137/0913035.
+// M. R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952), DOI 10.6028/jres.049.044; Y. Saad,
+// M. H. Schultz, SIAM J. Sci. Stat. Comput. 7, 856 (1986), DOI 10.1137/0907058.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,20 +48,22 @@ class Preconditioner {
   const Topology& topology_;
   const Sections& sections_;
   Blocks inverse_, lower_;  // inverse pivots of each chain; L_i,i-1
-  Blocks motion_;           // motion of each element in the six motions of its section
+  static constexpr int motions = 7;  // rows of each section
+  using Motions = Eigen::Matrix<double, 6, motions>;
+  std::vector<Motions, Eigen::aligned_allocator<Motions>> motion_;  // each element in those of its section
   Eigen::MatrixXd band_;    // Cholesky factor, row k of column j: (j + k, j)
 };
 
 struct Solution {
   int iterations = 0;
-  double residual = 0;     // relative
+  double residual = 0;     // relative, in the norm of the approximate inverse
   bool falls = false;      // a motion of negative curvature was met, or the solution points against b
   Eigen::VectorXd motion;  // that one, of conjugate gradients
 };
 using Precondition = std::function<void(const Eigen::VectorXd& r, Eigen::VectorXd& z)>;
 Solution conjugate_gradients(const Operator& a, const Precondition& m, const Eigen::VectorXd& b, double tolerance,
                              int most, Eigen::VectorXd& x);
-Solution bicgstab(const Operator& a, const Precondition& m, const Eigen::VectorXd& b, double tolerance, int most,
-                  Eigen::VectorXd& x);
+Solution gmres(const Operator& a, const Precondition& m, const Eigen::VectorXd& b, double tolerance, int most,
+               Eigen::VectorXd& x);
 
 }  // namespace ropewalk

@@ -44,7 +44,7 @@ def limits_that_check_foresees(case):
         key = words[words.index("bring" if "bring" in words else "with") + 1]
         if key not in ("twist_deg", "strain", "wall_twist") or "begins" in words:
             continue
-        value, entry = float(words[words.index("to") + 1].rstrip(",")), found[key]
+        value, entry = abs(float(words[words.index("to") + 1].rstrip(","))), found[key]
         at = float(words[words.index("about") + 1]) if "about" in words else 0
         # A rope that moves overshoots, and one that follows slowly comes later or not at all within its time.
         if value > 8 * entry["largest"] + 8 * entry["limit"]:

@@ -309,10 +309,10 @@ double corrugation(const LineContact& k, double distance, double strain) {
   return (high - low) / std::fabs(line_parallel_well(k.density).energy);
 }
 
-LineContact chosen_rows(double radius) {
+LineContact chosen_rows(double radius, bool for_statics = false) {
   const LineDensity u = test::line_density(radius, radius);
   const double length = 2 * radius;
-  const int nodes = line_nodes(length, line_parallel_well(u).distance, u.contact);
+  const int nodes = line_nodes(length, line_parallel_well(u).distance, u.contact, for_statics);
   return {u, length, length, nodes, nodes};
 }
 
@@ -325,6 +325,9 @@ TEST(LineContact, RowsHardlyCorrugateAtAnyStrain) {
       EXPECT_LT(corrugation(k, distance, strain), 2e-4) << radius << " nm, strain " << strain;
       EXPECT_LT(corrugation(k, distance - 0.05, strain), 4e-3) << radius << " nm, strain " << strain;
     }
+    const LineContact fine = chosen_rows(radius, true);
+    EXPECT_LT(corrugation(fine, distance, 0), 8e-6) << radius << " nm, for statics";
+    EXPECT_LT(corrugation(fine, distance - 0.05, 0), 1e-4) << radius << " nm, for statics";
   }
 }
 

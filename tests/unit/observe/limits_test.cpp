@@ -8,6 +8,7 @@
 #include "io/files.hpp"
 #include "io/limits_file.hpp"
 #include "model/error.hpp"
+#include "run/limit_watch.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
@@ -76,7 +77,6 @@ TEST(Limits, PeaksNameTheElement) {
   EXPECT_TRUE(peak_of(p, "speed_nm_per_ps").passed());
 }
 
-// A tenth of the speed of sound along graphene, 22 nm/ps.
 // Atoms that were pulled further than the terms of strain raise the limit of tension alone.
 TEST(Limits, TensionAndCompressionHaveLimitsOfTheirOwn) {
   Topology topology = published_topology();
@@ -96,8 +96,28 @@ TEST(Limits, TensionAndCompressionHaveLimitsOfTheirOwn) {
   EXPECT_NEAR(peak(-0.08).limit, 0.07, 1e-12);
   EXPECT_FALSE(peak(-0.06).passed());
   EXPECT_EQ(peak(-0.06).element, 3);
+  EXPECT_TRUE(peak(-0.08).pressed);
+  EXPECT_FALSE(peak(0.27).pressed);
 }
 
+// A pull of 0.2, which is within its limit, does not hide that bonds were pressed beyond theirs.
+TEST(Limits, RecordsHoldWhatWentFarthestBeyondItsOwnLimit) {
+  Topology topology = published_topology();
+  topology.add_tube(5);
+  Validity validity{0.087, 0.05, 0.07};
+  validity.tension = 0.26;
+  LimitWatch watch({{default_limits(topology.types[0], validity)}, {}});
+  std::string lines;
+  for (const double move : {0.05, -0.08, 0.2}) {
+    State s = straight(topology);
+    s.position.set(4, s.position[4] + Vector3(0, 0, move * test::element_length));
+    for (const std::string& line : watch.check(topology, s, {}, {}, false)) lines += line;
+  }
+  EXPECT_NE(lines.find("is strained by -0.08, beyond limits.strain = -0.07"), std::string::npos) << lines;
+  EXPECT_NE(passed_words(watch.records()).find("strain up to 0.08 (limit 0.07)"), std::string::npos);
+}
+
+// A tenth of the speed of sound along graphene, 22 nm/ps.
 TEST(Limits, SpeedIsATenthOfThatOfSound) {
   const Limits limits = default_limits(published_topology().types[0], {});
   EXPECT_NEAR(limits.speed, 2.15, 0.05);
@@ -118,6 +138,12 @@ TEST(Limits, AreThoseOfTheTubeType) {
   const Peaks p = peaks(topology, s, {}, {{wide, narrow}, {}});
   EXPECT_EQ(peak_of(p, "bend_deg").element, 4);
   EXPECT_NEAR(peak_of(p, "bend_deg").ratio(), 0.8, 1e-9);
+  wide.pressure = 3;
+  narrow.pressure = 1;
+  Watched watched{{wide, narrow}, {}};
+  watched.pressures = [](const State&) { return std::vector<double>{2.5, 2}; };
+  EXPECT_EQ(pressure_peak(topology, s, watched).element, 4);
+  EXPECT_TRUE(pressure_peak(topology, s, watched).passed());
   narrow.bend = 0;  // not watched
   EXPECT_EQ(peak_of(peaks(topology, s, {}, {{narrow, narrow}, {}}), "bend_deg").passed(), false);
 }

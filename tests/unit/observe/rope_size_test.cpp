@@ -59,7 +59,6 @@ TEST(RopeSize, InUnitsOfYarns) {
                   per_nm * 1e15, 19 * rope.cell(), density * 1e-3, 1e3 / density));
   EXPECT_NEAR(per_nm * 1e15, 19 * 3.197e-9, 2e-11);
   EXPECT_EQ(size_words(RopeSize()), "");
-  EXPECT_NEAR(yarn_turns(7.16245 * units::degree, 20e3), 2000e-9, 1e-11);
 }
 
 // Neither the ends of its tubes nor the images at its own ends count in a yarn.

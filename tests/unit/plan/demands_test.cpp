@@ -134,9 +134,36 @@ TEST(Demands, OfASliceThatIsDrawnOutAreKnown) {
   EXPECT_NEAR(twisted.wall_twist(100), 0.0361, 0.0001) << "as in a run";
 }
 
-// One couple in three ways, on a rope that begins wound to either side. Runs under 20 nN nm, ramped in 50 ps, pass
-// a wall twist of 0.015 at 10.3 ps where the start of 1 degree/nm has the hand of the couple, at 14.3 ps where it
-// has not; the couple alone has it at 17.9 ps.
+// Bonds that are pressed have a limit of their own, of 0.0686 where pulled ones have 0.26. A run under 150 nN on each
+// tube presses them by 0.09, one whose clamps come nearer by 0.08 presses straight tubes by that; warm tubes buckle
+// instead.
+TEST(Demands, OfPressedTubesHaveTheLimitOfCompression) {
+  const std::string clamps = "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n";
+  const auto force = [&](double nN) {
+    return clamps + fmt::format("as = \"each\"\nz = {{ force_nN = [[0, 0], [100, {}]] }}\n", nN);
+  };
+  const Ahead pushed(force(-150)), pulled(force(150));
+  EXPECT_NEAR(pushed.demands.at(100).pressed,
+              -TubeLaw(pushed.p.topology.types[0]).strain_under(-150 * units::nN_nm, 0), 1e-9);
+  EXPECT_GT(pushed.demands.at(100).pressed, 0.08);
+  EXPECT_EQ(pushed.demands.at(100).strain, 0);
+  EXPECT_THAT(pushed.notes(), HasSubstr("may bring strain to -0.0"));
+  EXPECT_THAT(pushed.notes(), HasSubstr("beyond its limit of -0.0686"));
+  EXPECT_EQ(pulled.notes(), "");
+
+  const std::string nearer = "z = { strain = [[0, 0], [100, -0.08]] }\n";
+  const Ahead cold(clamps + nearer),
+      warm("[start]\ntemperature_K = 10\nmay_cool = true\n" + clamps + "z = { strain = [[0, 0], [100, -0.12]] }\n");
+  EXPECT_NEAR(cold.demands.at(100).pressed, 0.08, 1e-6);
+  EXPECT_THAT(cold.notes(), HasSubstr("may bring strain to -0.08, from about 85.8 ps on"));
+  EXPECT_LT(warm.demands.at(100).pressed, 0.07);
+  EXPECT_THAT(warm.notes(), HasSubstr("may bring kink_curvature_per_nm to 0."));
+
+  const Ahead bent(clamps + "about_x = { rotation_deg = [[0, 0], [100, 80]] }\n[limits]\nstrain = 0.05\n");
+  EXPECT_THAT(bent.notes(), HasSubstr("may bring strain to 0.0"));
+  EXPECT_THAT(bent.notes(), HasSubstr("may bring strain to -0.0"));
+}
+
 // Ends that a grip moves aside draw the tubes out and bend them at the clamps, held in z or free to come nearer.
 TEST(Demands, OfEndsThatAreMovedAsideAreKnown) {
   const std::string lower = "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n",
@@ -152,6 +179,9 @@ TEST(Demands, OfEndsThatAreMovedAsideAreKnown) {
   EXPECT_THAT(Ahead(lower + aside + "[limits]\nstrain = 0.003\n").notes(), HasSubstr("may bring strain to 0.00"));
 }
 
+// One couple in three ways, on a rope that begins wound to either side. Runs under 20 nN nm, ramped in 50 ps, pass
+// a wall twist of 0.015 at 10.3 ps where the start of 1 degree/nm has the hand of the couple, at 14.3 ps where it
+// has not; the couple alone has it at 17.9 ps.
 TEST(Demands, OfACoupleAreThoseOfTheTubeThatBearsIt) {
   for (const double start : {-1.0, 0.0, 1.0}) {
     const std::string wound = fmt::format("[start]\ntwist_deg_per_nm = {}\n", start);

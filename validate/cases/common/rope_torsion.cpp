@@ -32,7 +32,7 @@ void check_at(const RopeInMachine& rope, const CaseTube& tube, double degrees, L
   const std::string at =
       fmt::format("{} tubes of {}, {:g}°", rope.tubes, paper ? "the published set" : tube.name, degrees);
   const bool initial = degrees<1, steep = degrees> 12;
-  const char* why = initial ? (paper ? "the published contact has a grain along the tubes" : "closed form")
+  const char* why = initial ? (paper ? "the published contact varies along the tubes with the elements" : "closed form")
                     : steep ? "radii change by up to 1 %, and crowding is known to its first order in the curvature"
                             : "radii change a little, and crowding is known to its first order in the curvature";
   result.check_relative("torque per tube, " + at, seen.torque * in_nN_nm, exact.torque * in_nN_nm,

@@ -219,7 +219,7 @@ TEST(EndDrives, TheoryAsksForOppositeCouplesOnFreeEnds) {
   EXPECT_FALSE(rests(torque("\"opposite-ends\"", 32, "tubes = [0, 1]\n"))) << "on two tubes";
   EXPECT_FALSE(rests(torque("[5]", 32) + torque("[0]", -32))) << "on no end";
   EXPECT_FALSE(rests(torque("[-1]", 32) + "[[load]]\nkind = \"fix\"\nelements = [0]\n")) << "one end is held";
-  EXPECT_FALSE(rests(sudden().at("two loads") + "[[load]]\nkind = \"fix\"\nelements = [0]\n"))
+  EXPECT_FALSE(rests(torque("\"opposite-ends\"", 32) + "[[load]]\nkind = \"fix\"\nelements = [0]\n"))
       << "a clamp bears it";
   std::string stiff = grip("both", "torque_nN_nm = 32");
   stiff.replace(stiff.find("about_x = \"free\""), 16, "about_x = \"held\"");

@@ -52,8 +52,8 @@ CaseResult run(const CaseContext& context) {
                             "from the energy over six elements of the way");
       result.check_relative("reading of the clamp, " + of, b.force * units::eV_in_nN_nm,
                             contacts * per_contact * units::eV_in_nN_nm, 4e-2, "nN",
-                            paper ? "at one place: the elements of the published law feel one another's grain"
-                                  : "at one place: a little of the elements' grain is left");
+                            paper ? "at one place: the energy of the published law varies along the elements"
+                                  : "at one place: a little variation along the elements is left");
       result.checks.back().informative = paper;
     }
     if (k > 0) continue;
