@@ -48,9 +48,9 @@ class Preconditioner {
   const Topology& topology_;
   const Sections& sections_;
   Blocks inverse_, lower_;  // inverse pivots of each chain; L_i,i-1
-  static constexpr int motions = 7;  // rows of each section
+  static constexpr int motions = 7;  // their number for each section
   using Motions = Eigen::Matrix<double, 6, motions>;
-  std::vector<Motions, Eigen::aligned_allocator<Motions>> motion_;  // each element in those of its section
+  std::vector<Motions, Eigen::aligned_allocator<Motions>> motion_;  // how each element moves in them
   Eigen::MatrixXd band_;    // Cholesky factor, row k of column j: (j + k, j)
 };
 
