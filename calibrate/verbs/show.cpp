@@ -267,7 +267,8 @@ std::string calibration_page(const ParameterSet& set) {
                      escape_markup(set.name) + "</h1>\n";
   html +=
       paragraph(fmt::format("{}: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², {} {:.5g} nm.",
-                            set.filament ? "A filament" : "The " + tube_name(set) + " tube", set.bond.stretch * units::eV_in_nN_nm,
+                            set.filament ? "A filament" : "The " + tube_name(set) + " tube",
+                            set.bond.stretch * units::eV_in_nN_nm,
                             set.bond.bend * units::eV_in_nN_nm, set.bond.twist * units::eV_in_nN_nm,
                             set.filament ? "contact radius" : "radius", set.radius));
   html += paragraph("<b>" + escape_markup(grade_of(set).words()) + "</b>");

@@ -12,7 +12,8 @@ struct TubeReference {
   double poisson = 0;  // -d ln r / d strain
 };
 
-// Throws InputError for a filament, and where radius and atoms per length of the set are not those of its (n,m), within 10 %.
+// Throws InputError for a filament, and where radius and atoms per length of the set are not those of its (n,m), within
+// 10 %.
 TubeReference reference_of(const ParameterSet& set);
 
 }  // namespace ropewalk

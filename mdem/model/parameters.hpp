@@ -110,7 +110,7 @@ struct ParameterSet {
   std::string doi;
   bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
   Chirality chirality;            // (0,0), which is no tube, for a filament
-  double radius = 0;              // nm: of the wall of a tube, which is its contact radius; contact_radius of a filament
+  double radius = 0;              // nm: of the wall of a tube, its contact radius too; contact_radius of a filament
   double atoms_per_length = 0;    // 1/nm; 0 for a filament
   double mass_per_length = 0;     // eV ps^2/nm^3, of a filament
   double element_length = 0;    // nm
