@@ -92,10 +92,7 @@ RunCurve curve_of(const RunGroup& group, bool pictured, double mean_ps) {
   if (logs.empty()) throw InputError({group.runs.front().log(), 0, ""}, "has no rows", "run the scene further");
   RunCurve curve = mean_of(group.name, logs);
   if (mean_ps > 0) {
-    if (std::any_of(logs.begin(), logs.end(), stands_still))
-      throw InputError({group.runs.front().log(), 0, "--mean"},
-                       "is the log of a relaxation: its rows are steps, which have no mean over time",
-                       "leave --mean out");
+    refuse_mean_over(mean_ps, logs, group.runs.front().log());
     curve.means = means_of(logs, mean_ps);
   }
   if (group.runs.size() == 1) curve.error = rows_of_errors(group.runs.front().path, curve.log);

@@ -44,8 +44,13 @@ class Bisection {
 
   Outcome look_at(double value) {
     const Scene scene = static_scene(scene_of_text(trial_text(sweep_, point_, value), sweep_.scene_path));
-    const StaticRest rest = static_rest(scene, "", goes_on_, last_ ? &*last_ : nullptr);
     ++out_.states;
+    StaticRest rest;
+    try {
+      rest = static_rest(scene, "", goes_on_, last_ ? &*last_ : nullptr);
+    } catch (const NumericalError& e) {  // the other points have their thresholds all the same
+      return out_.why = fmt::format("no state of rest at {:g}: {}", value, e.what()), Outcome::unclear;
+    }
     if (!rest.at_rest)
       return out_.why = fmt::format("no state of rest at {:g}: {}", value, rest.why), Outcome::unclear;
     // A solution that left a saddle of the energy is another state than the first one.

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "commands/sweep_progress.hpp"
 #include "io/files.hpp"
+#include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/state_csv.hpp"
@@ -51,6 +53,7 @@ int coarsen_command(const CoarsenArguments& a) {
     throw InputError({"", 0, "-o"}, "is missing", "name the directory of a run, or a state file by --state");
   if (!a.state.empty()) refuse_existing(a.state, "--state", a.force);
   const CoarsenSettings settings{a.files, a.parameters, a.element_length, a.time_step_fs};
+  listen_to_stop_signals();
   TerminalListener terminal(a.quiet);
   Coarsening coarse(settings);
   const bool timed = coarse.states_time();
@@ -60,12 +63,14 @@ int coarsen_command(const CoarsenArguments& a) {
     tell_tubes(coarse);
   std::FILE* to = a.json ? stderr : stdout;
   if (!a.state.empty()) {
-    while (coarse.next()) {
+    while (!stop_signal && coarse.next()) {
     }
+    if (stop_signal) return tell_stop();
     write_file_atomically(a.state, state_csv(coarse.topology(), coarse.state()));
     fmt::print(to, "{} written: {} elements\n", a.state, coarse.topology().elements());
     return 0;
   }
+  if (stop_signal) return tell_stop();
   const CoarseRun run = write_coarse_run(coarse, settings, {a.out}, a.force, terminal);
   if (coarse.cut_off()) terminal.tell("note: the last frame is cut off and was left out");
   if (!timed && run.frames > 1)

@@ -240,10 +240,7 @@ int errors_command(const ErrorsArguments& a) {
   NumericPlan plan;
   if (a.numerics) plan = numeric_plan(run.dir, run.scene, run.prepared, run.log);
   plan.what.mean_ps = a.mean_ps;
-  if (a.mean_ps > 0 && stands_still(run.log))
-    throw InputError({run.dir.log(), 0, "--mean"},
-                     "is the log of a relaxation: its rows are steps, which have no mean over time",
-                     "leave --mean out");
+  if (a.mean_ps > 0) refuse_mean_over(a.mean_ps, {run.log}, run.dir.log());
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   Repeats repeats(jobs, a.quiet);
   const ErrorRuns runs(run.dir, run.scene, run.prepared, a.again);

@@ -392,10 +392,11 @@ std::vector<double> Coarsening::filled() const {
   return out;
 }
 
-CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, const RunDirectory& to, bool force,
-                           RunListener& listener) {
+namespace {
+
+CoarseRun write_files_of(Coarsening& coarse, const CoarsenSettings& settings, const RunDirectory& to,
+                         RunListener& listener) {
   const RunClock clock;
-  const DirectoryLock lock = create_run_directory(to, force);
   std::vector<std::string> names;
   for (std::size_t k = 0; k < coarse.sets().size(); ++k) {
     write_file_atomically(to.parameters(k), read_file(coarse.sets()[k].path));
@@ -467,6 +468,19 @@ CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, 
   write_file_atomically(to.manifest(), manifest_json(m));
   done.passed = passed_words(watch.records());
   return done;
+}
+
+}  // namespace
+
+CoarseRun write_coarse_run(Coarsening& coarse, const CoarsenSettings& settings, const RunDirectory& to, bool force,
+                           RunListener& listener) {
+  const DirectoryLock lock = create_run_directory(to, force);
+  try {
+    return write_files_of(coarse, settings, to, listener);
+  } catch (...) {
+    empty_run_directory(to);  // half of it would stand in the way of the same command
+    throw;
+  }
 }
 
 }  // namespace ropewalk

@@ -84,6 +84,11 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
   const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1; };
   if (std::any_of(groups.begin(), groups.end(), one_seed))
     chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
+  const auto beyond =
+      std::count_if(groups.begin(), groups.end(), [](const LoadTestGroup& g) { return first_limit(all_limits(g)); });
+  if (beyond > 0)
+    chart.note += fmt::format("{}{} of {} points passed a limit of the model", chart.note.empty() ? "" : "; ", beyond,
+                              groups.size());
   const std::vector<ChartLine> measured = chart.lines;
   for (const auto& [level, name] : kind.levels) {
     ChartLine line{name, {}, {}, 5, true};

@@ -155,6 +155,21 @@ bool stands_still(const std::vector<LogRow>& log) {
   return log.size() > 1 && log.back()["time_ps"] == log.front()["time_ps"];
 }
 
+void refuse_mean_over(double over_ps, const std::vector<std::vector<LogRow>>& logs, const std::string& path) {
+  double longest = 0;
+  for (const std::vector<LogRow>& log : logs) {
+    if (stands_still(log))
+      throw InputError({path, 0, "--mean"},
+                       "is the log of a relaxation: its rows are steps, which have no mean over time",
+                       "leave --mean out");
+    longest = std::max(longest, log.back()["time_ps"] - log.front()["time_ps"]);
+  }
+  if (over_ps > longest * (1 + 1e-9))
+    throw InputError({path, 0, "--mean"},
+                     fmt::format("has rows over {:.6g} ps, and the mean is to be over {:.6g} ps", longest, over_ps),
+                     "give a shorter time");
+}
+
 RunMeans means_of(const std::vector<std::vector<LogRow>>& logs, double over_ps) {
   RunMeans out;
   out.over_ps = over_ps;

@@ -40,6 +40,10 @@ struct RunCurve {
 // Whether no time passes in its rows, as in the log of a relaxation.
 bool stands_still(const std::vector<LogRow>& log);
 
+// Throws InputError where these logs, the first of which is in `path`, have no mean over the last so many ps:
+// relaxations, and runs that are all shorter.
+void refuse_mean_over(double over_ps, const std::vector<std::vector<LogRow>>& logs, const std::string& path);
+
 // Means of logs with rows at the same times, as far as the shortest reaches. Of relaxations, whose rows have no
 // time, the last rows alone.
 RunCurve mean_of(std::string name, const std::vector<std::vector<LogRow>>& logs);

@@ -245,6 +245,12 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
                             "-o b.svg --x nothing"})
     EXPECT_EQ(run(std::string("picture d ") + wrong).code, 2) << wrong;
   EXPECT_FALSE(fs::exists(dir / "b.svg"));
+  EXPECT_EQ(svg.find("beyond "), std::string::npos) << "no limit was passed";
+  spit(dir / "far.toml", text + "frames_every_ps = 2\n[limits]\ntwist_deg = 0.2\n");
+  ASSERT_EQ(run("run far.toml --out far --quiet").code, 7) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("picture far -o far.svg --curves torque_upper_nN_nm --x rotation_deg").code, 0);
+  const std::string far = slurp(dir / "far.svg");
+  for (const char* part : {">beyond twist_deg<", " beyond\" d="}) EXPECT_NE(far.find(part), std::string::npos) << part;
 }
 
 // A tube that is turned by an angle bears GJ angle/L: long tubes do not pass what short ones pass.
@@ -634,6 +640,17 @@ TEST_F(Campaign, StaticRestIsTheSameFromBothSides) {
                               "[damping]\ncontact_viscosity_eV_ps_per_nm3 = 0\n"
                               "bond_damping_per_ps = 0\n");
   EXPECT_NE(run("rest warm.toml --static").err.find("thermostat: keeps the rope warm"), std::string::npos);
+}
+
+// Far beyond what the bonds carry statics has no state, which ends no search of other points.
+TEST_F(Campaign, StaticThresholdSaysWhereThereIsNoState) {
+  spit(dir / "tube.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 4\n"
+       "perturbation_nm = 0.01\n[twist]\nmoment_nN_nm = 2\nrate_nN_nm_per_ps = 4\n");
+  sweep_file("[threshold]\nkey = \"twist.moment_nN_nm\"\nfrom = 1\nto = 40\ncolumn = \"beta_deg\"\nabove = 5\n");
+  const Outcome o = run("threshold s.toml --static");
+  EXPECT_EQ(o.code, 0) << o.err;
+  EXPECT_NE(o.out.find("no state of rest at 40: "), std::string::npos) << o.out;
 }
 
 // A tube with free ends under couples of fixed direction: 8.987 EI/L (A. G. Greenhill, 1883).

@@ -1271,6 +1271,19 @@ TEST_F(Cli, NumericsTellHowFarARodIsOff) {
   EXPECT_EQ(run("errors r --numerics --mean 1 --quiet").code, 2);
 }
 
+TEST_F(Cli, NoMeanIsTakenOverMoreThanTheRun) {
+  spit(dir / "s.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 4\n"
+       "[run]\nduration_ps = 1\nlog_every_ps = 0.1\n");
+  ASSERT_EQ(run("run s.toml --out r --quiet").code, 0) << slurp(dir / "stderr.txt");
+  for (const char* command : {"errors r --numerics --quiet --mean ", "compare r r --page p.html --force --mean "}) {
+    const Outcome o = run(std::string(command) + "1.5");
+    EXPECT_EQ(o.code, 2) << command << o.out;
+    EXPECT_THAT(o.err, ::testing::HasSubstr("has rows over 1 ps, and the mean is to be over 1.5 ps"));
+  }
+  EXPECT_EQ(run("compare r r --page p.html --mean 1").code, 0) << slurp(dir / "stderr.txt");
+}
+
 // A rope whose expectation holds for it alone, not for the repetition that takes twice as long.
 TEST_F(Cli, TheWholeErrorHasFourParts) {
   spit(dir / "rope.toml", R"(

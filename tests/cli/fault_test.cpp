@@ -371,6 +371,24 @@ TEST_F(Faults, AtomsWithoutRoomLeaveNoneOfTheirFiles) {
   unsetenv("ROPEWALK_FAULTS_CALL");
 }
 
+TEST_F(Faults, ACoarsenWithoutRoomDoesNotStandInItsOwnWay) {
+  spit(dir / "t.toml",
+       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-5-5-tersoff\"\n[rope]\ntubes = 1\nlength_nm = 4\n"
+       "[run]\nduration_ps = 0.02\n");
+  ASSERT_EQ(run("run t.toml --out ready --quiet").code, 0) << slurp(dir / "stderr.txt");
+  ASSERT_EQ(run("atoms ready -o t.xyz").code, 0);
+  ASSERT_EQ(run("coarsen t.xyz -o whole --quiet").code, 0);
+  setenv("ROPEWALK_FAULTS_CALL", "write", 1);
+  long n = 1;
+  for (; with(fmt::format("ENOSPC:{}:on", n), "coarsen t.xyz -o d --quiet").code != 0; ++n) {
+    ASSERT_LT(n, 100);
+    for (const auto& entry : fs::directory_iterator(dir / "d")) ADD_FAILURE() << n << ": " << entry.path();
+  }
+  unsetenv("ROPEWALK_FAULTS_CALL");
+  EXPECT_GT(n, 3);
+  EXPECT_EQ(slurp(dir / "d/log.csv"), slurp(dir / "whole/log.csv"));
+}
+
 // A verb that starts processes of its own, killed in whichever of them, or with the disk full from a call on. Its
 // files are whole or not there, the same command then ends as if it had been left alone, and leaves no temporary
 // folder.

@@ -73,6 +73,15 @@ TEST_F(Filament, CasesAgainstAtomsAreNotForIt) {
   EXPECT_THAT(slurp(dir / "v/ring-energy.json"), HasSubstr("f-actin"));
 }
 
+// What theory says of a beam and of a zipper holds for both, whose stiffnesses and wells are 20 to 30 times apart.
+TEST_F(Filament, TheoryHoldsForTheShippedOnes) {
+  for (const std::string name : {"cellulose-36", "f-actin"}) {
+    const Outcome o = run("validate run ring-energy euler-buckling stretch-and-cantilever peeling-force --parameters " +
+                          name + " --quiet --out " + name);
+    EXPECT_EQ(o.code, 0) << o.out << o.err;
+  }
+}
+
 }  // namespace UNIT
 }  // namespace
 }  // namespace ropewalk

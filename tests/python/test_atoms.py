@@ -66,17 +66,19 @@ class AtomsTest(FolderTest):
 
     def test_no_atoms_bridge_a_break(self):
         scene = ropewalk.Scene({
-            "parameters": "cnt-5-5-tersoff", "rope": {"tubes": 7, "length_nm": 12}, "failure": {"strain": 0.02},
-            "grip": [{"end": "lower"}, {"end": "upper", "z": {"displacement_nm": [[0, 0], [4, 2]]}}],
-            "run": {"duration_ps": 5, "frames_every_ps": 5}})
-        frame = ropewalk.run(scene, "pulled").frames[-1]
+            "parameters": "cnt-5-5-tersoff", "chain": {"elements": 9}, "failure": {"strain": 0.05},
+            "grip": [{"end": "lower"}, {"end": "upper", "z": {"displacement_nm": 3, "rate_nm_per_ps": 1}}],
+            "run": {"frames_every_ps": 1}})
+        frame = ropewalk.run(scene, "torn").frames[-1]
         simulation = ropewalk.Simulation(scene)
         simulation.step_until(frame.time_ps)
+        radius = ropewalk.ParameterSet("cnt-5-5-tersoff")["tube.radius"].value
         for of in (frame, simulation):
             found = ropewalk.atoms(of)
-            for tube in range(7):
-                heights = np.sort(found.position[found.tube == tube, 2])
-                self.assertGreater(np.diff(heights).max(), 1, "nm")
+            position = of.flat.position if of is frame else simulation.state.flat.position
+            self.assertGreater(np.ptp(position[:, 2]), 8 * frame.element_length_nm + 2, "nm: the ends are apart")
+            away = np.linalg.norm(found.position - position[found.element], axis=1)
+            self.assertLess(away.max(), np.hypot(radius, 0.53 * frame.element_length_nm), "nm")
 
     def test_files_become_a_run(self):
         ropewalk.programs._call(["atoms", "run", "-o", "rope.data"])

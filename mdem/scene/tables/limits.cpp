@@ -19,7 +19,8 @@ const std::array<Text, limit_count>& texts() {
                  "in tension the last strain of [bond.pull] of the set, else validity.stretch; in compression "
                  "validity.stretch"),
        "strain of a bond, in tension or compression"},
-      {otherwise("0.11", "down to the core gap of the law"), "how much nearer than at rest tubes are pressed"},
+      {otherwise("0.11", "down to the core gap of the law"),
+       "how far tubes are pressed together beyond their distance at rest"},
       {otherwise("2", "a tenth of the speed of sound along the tube"), "speed of an element"},
       {otherwise("2.3", "where a tube of this diameter collapses"), "pressure of the contacts on a tube"},
       {standard("0.05"), "error of the energy balance over the energy that was converted"},

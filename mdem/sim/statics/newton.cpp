@@ -406,7 +406,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         pace->rate = std::max(2 * pace->rate, 0.02);
         continue;
       }
-      // Where forces agree with the model, as of tubes that slide far along others, one direction is good for more.
+      // One direction is good for more where forces agree with the model, as those of tubes that slide do.
       while (step.scale < 1 && step.disagreement() < 0.05 && step.scale * far < most_widened * options_.farthest) {
         Simulation there = s_;
         s_ = before;

@@ -1,5 +1,7 @@
 #include "cases/common/chain.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
@@ -115,6 +117,13 @@ double lowest_under_load(const ParameterSet& set, int bonds, double load) {
 }
 
 }  // namespace
+
+void refuse_slip(const ParameterSet& set, double moment) {
+  if (moment * set.element_length < 0.9 * set.bond.twist) return;
+  throw NotApplicable(
+      fmt::format("GJ is {:.2g} of EI: a bond of {:.3g} nm slips in twist before the chain buckles",
+                  set.bond.twist / set.bond.bend, set.element_length));
+}
 
 double buckling_load(const ParameterSet& set, int bonds, double expected) {
   return zero_between([&](double p) { return lowest_under_load(set, bonds, p); }, 0.5 * expected, 2.5 * expected);

@@ -1,4 +1,6 @@
 // A long tube coiled upon itself: bending against adhesion.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "cases/common/bundle.hpp"
@@ -45,6 +47,9 @@ CaseResult run(const CaseContext& context) {
     return 0.5 * bend * bent / (r * r) - adhesion * (length - 2 * units::pi * r);
   };
   const double radius = std::cbrt(bend * bent / (2 * units::pi * adhesion));
+  if (length < 1.2 * 2 * units::pi * radius)
+    throw NotApplicable(fmt::format("a chain of {} elements is too short to coil: one turn takes {:.3g} nm", elements,
+                                    2 * units::pi * radius));
   CaseResult result;
   result.check_relative("radius of the coil", best_radius(model, 0.7 * radius, 1.2 * radius), radius, 1e-2, "nm",
                         "ends and tilt of the turns change it by less than 0.5 %");

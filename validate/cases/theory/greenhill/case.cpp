@@ -28,6 +28,7 @@ double lowest_under_moment(const ParameterSet& set, int bonds, Ends ends, double
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
+  refuse_slip(oracle, 2 * clamped_root * oracle.bond.bend / (16 * oracle.element_length));
   CaseResult result;
   CaseFigure figure = case_figure("Critical twisting moment against length", {"length", "nm"}, {"moment", "eV"},
                                   "Moment at which the twisted straight chain loses its lateral stiffness.");
