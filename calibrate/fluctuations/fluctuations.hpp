@@ -41,7 +41,7 @@ struct RodStiffness {
 struct Fluctuation {
   std::vector<RodStiffness> windows;
   RodStiffness rod;          // difference of the longest and the shortest window
-  double static_part = 0;    // of a bond's mean square, the largest of bends and twist; left out
+  double static_part = 0;    // largest part of a bond's mean square, over bends and twist, that is left out
   double frames_needed = 0;  // for all errors, where there are none; 0: all are known
   long frames = 0, bonds = 0;
   // Whether stiffnesses of all windows agree with those of `rod` within three standard errors.

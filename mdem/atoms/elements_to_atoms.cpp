@@ -30,7 +30,7 @@ TubeCurve::TubeCurve(const State& state, std::size_t first, int elements, double
   if (!bonds_.empty()) return;
   Bond alone;
   alone.from = state.position[first];
-  alone.start = state.orientation[first];
+  alone.start = alone.end = state.orientation[first];
   alone.tangent_from = alone.tangent_to = element_length * axis_of(alone.start);
   alone.to = alone.from + alone.tangent_from;
   alone.turn_axis = Vector3::UnitZ();
