@@ -69,7 +69,7 @@ void refuse_loads(const Scene& scene, const Topology& topology, const Interactio
       clamped[i] = clamped[i] || is_grip;
     }
   }
-  std::map<std::string, int> number;  // of a table among those of its name
+  std::map<std::string, int> number;  // the place of a table among those of its name
   for (const auto& drive : scene.drives) {
     const std::string table = drive->table().name;
     const InputError::Place place = place_in(scene, table, number[table]++);
