@@ -5,11 +5,11 @@
 namespace ropewalk::validate {
 namespace {
 
-constexpr int tube_elements = 50;
+constexpr int peeled_elements = 50;
 
 // Start: the shape of a cantilever clamped at the crack tip.
 void open_arm(double opening, double crack, double side, const ParameterSet& set, std::size_t first, State& state) {
-  for (int e = 0; e < tube_elements; ++e) {
+  for (int e = 0; e < peeled_elements; ++e) {
     const double s = e * set.element_length / crack;
     if (s >= 1) return;
     const auto i = first + static_cast<std::size_t>(e);
@@ -22,25 +22,25 @@ void open_arm(double opening, double crack, double side, const ParameterSet& set
 }  // namespace
 
 Peel peel(const ParameterSet& set, double opening, double crack) {
-  Bundle b = line_bundle(set, 1, tube_elements);
-  b.topology.add_tube(tube_elements);
-  b.state = State(static_cast<std::size_t>(2 * tube_elements));
+  Bundle b = line_bundle(set, 1, peeled_elements);
+  b.topology.add_tube(peeled_elements);
+  b.state = State(static_cast<std::size_t>(2 * peeled_elements));
   LoadsAndConstraints loads;
   for (int t = 0; t < 2; ++t) {
     const double side = t == 0 ? -1 : 1;
-    const auto first = static_cast<std::size_t>(t * tube_elements);
-    for (int e = 0; e < tube_elements; ++e)
+    const auto first = static_cast<std::size_t>(t * peeled_elements);
+    for (int e = 0; e < peeled_elements; ++e)
       b.state.position.set(first + static_cast<std::size_t>(e),
                            {0.5 * side * b.spacing, 0, e * set.element_length});
     open_arm(opening, crack, side, set, first, b.state);
-    loads.add(FixLoad({t * tube_elements}, true, true, false, false));
-    loads.add(FixLoad({(t + 1) * tube_elements - 1}, false, true, true, false));
+    loads.add(FixLoad({t * peeled_elements}, true, true, false, false));
+    loads.add(FixLoad({(t + 1) * peeled_elements - 1}, false, true, true, false));
   }
   const double step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   const Simulation s = at_rest(Simulation(b.topology, b.interaction, loads, b.state, step), 1e-5, 400000);
   Peel out;
   out.opening = opening;
-  for (const std::size_t end : {std::size_t{0}, static_cast<std::size_t>(tube_elements)}) {
+  for (const std::size_t end : {std::size_t{0}, static_cast<std::size_t>(peeled_elements)}) {
     const double force = std::fabs(s.forces().force.x[end]);
     out.force += 0.5 * force;
     out.release += force * std::fabs(axis_of(s.state().orientation[end]).x());
