@@ -244,7 +244,9 @@ TEST(FilamentSet, RefusesWhatOnlyATubeHas) {
   EXPECT_THAT(said_of_filament("[validity]", "[atomistic]\n[validity]"), HasSubstr("atomistic: is of the lattice"));
   EXPECT_THAT(said_of_filament("[validity]", "[bond.anharmonic]\n[validity]"), HasSubstr("anharmonic: is of the wall"));
   EXPECT_THAT(said_of_filament("[filament]", "[tube]\n[filament]"), HasSubstr("tube: is that of a carbon tube"));
-  EXPECT_THAT(behind("[validity]", "endless_collapse = 1"), HasSubstr("endless_collapse: is of the wall"));
+  EXPECT_THAT(
+      behind("[validity]", "endless_collapse = { value = 1, unit = \"1\", standard_error = 0, origin = \"chosen\" }"),
+      HasSubstr("endless_collapse: is of the wall"));
 }
 
 TEST(FilamentSet, SaysWhatBondsCannotHave) {
@@ -266,7 +268,8 @@ TEST(FilamentSet, WhoseWellIsNotThatOfItsLawIsRefused) {
 
 TEST(FilamentSet, IsWhatASetWithoutChiralityIsPointedTo) {
   std::string text = read_file(path);
-  text.erase(text.find("chirality"), text.find('\n', text.find("chirality")) - text.find("chirality"));
+  const std::size_t line = text.find("\nchirality");
+  text.erase(line, text.find('\n', line + 1) - line);
   try {
     parameters_of_text(text, "set.toml");
     FAIL();

@@ -96,7 +96,7 @@ TEST_F(StateOfAnEnd, FrictionGoesOn) {
 
     fs::remove(path("end-memory.csv"));
     EXPECT_THAT(refusal(still + friction + clamps + run),
-                HasSubstr("end.csv: names end-memory.csv, which is not there"));
+                HasSubstr("end.csv: names end-memory.csv, and there is no such file"));
     EXPECT_EQ(refusal(still + clamps + run), "") << "it is not needed";
     std::string text = read_file(path("end.csv"));
     const std::size_t at = text.find("# memory");
