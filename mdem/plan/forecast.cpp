@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "plan/demands.hpp"
@@ -91,12 +92,13 @@ struct Ahead {
   double passes = 0;  // ps, from when on it is beyond
 };
 
-Ahead ahead_of(const DemandsAhead& demands, const TubeType& type, double Limits::*kind, double limit) {
+// `end`: ps, of the run, which loads may outlast.
+Ahead ahead_of(const DemandsAhead& demands, double end, const TubeType& type, double Limits::*kind, double limit) {
   const auto value = [&](double time) { return expected(demands.at(time), type, kind); };
   Ahead out{value(0), 0, 0};
   double before = 0;
-  for (const double time : demands.times()) {
-    const double now = value(time);
+  for (const double asked : demands.times()) {
+    const double time = std::min(asked, end), now = value(time);
     if (now > limit && !(out.largest > limit)) {
       double low = before, high = time;
       for (int k = 0; k < 30 && high > low; ++k) {
@@ -137,6 +139,7 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
   const std::vector<Limits> limits = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits;
   const std::vector<std::size_t> types = types_with_tubes(p.topology);
+  const double end = scene.run.mode == RunOptions::Mode::relax ? std::numeric_limits<double>::infinity() : p.duration;
   std::vector<DemandsAhead> demands;
   for (const std::size_t type : types) demands.emplace_back(scene, p, type);
   for (const auto& [asked, member] : all_asked()) {
@@ -150,7 +153,7 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
     for (std::size_t k = 0; k < types.size(); ++k) {
       const double here = limit_of(limits[types[k]]);
       if (here <= 0 || kind.limit == &Limits::shock) continue;
-      const Ahead of_type = ahead_of(demands[k], p.topology.types[types[k]], member, here);
+      const Ahead of_type = ahead_of(demands[k], end, p.topology.types[types[k]], member, here);
       if (k > 0 && !(of_type.largest / here > ahead.largest / limit_of(limits[type]))) continue;
       ahead = of_type;
       type = types[k];
