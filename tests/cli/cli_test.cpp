@@ -84,7 +84,7 @@ TEST_F(Cli, WrongVerbsAndOptionsSayWhatWasMeant) {
         std::pair{"run x.toml --out d --threads 5000", "--threads: 5000 must lie between 1 and 1024"},
         std::pair{"run x.toml --out d --until -1", "--until: -1 must not be negative"},
         std::pair{"check d --accuracy --stretch 0", "--stretch: 0 must be positive"},
-        std::pair{"bench rope-91x50 --parts 4", "--parts: is no option any more: export the scene"},
+        std::pair{"bench rope-91x50 --parts 4", "--parts: is no option any more; export the scene"},
         std::pair{"bench --plain", "--plain: is no option any more"},
         std::pair{"help scen", "did you mean scene?"}, std::pair{"help lnks", "did you mean links?"},
         std::pair{"--xyz", "there is no option --xyz; see ropewalk --help"}}) {
@@ -1279,7 +1279,7 @@ TEST_F(Cli, NoMeanIsTakenOverMoreThanTheRun) {
   for (const char* command : {"errors r --numerics --quiet --mean ", "compare r r --page p.html --force --mean "}) {
     const Outcome o = run(std::string(command) + "1.5");
     EXPECT_EQ(o.code, 2) << command << o.out;
-    EXPECT_THAT(o.err, ::testing::HasSubstr("has rows over 1 ps, and the mean is to be over 1.5 ps"));
+    EXPECT_THAT(o.err, ::testing::HasSubstr(" ps, and the mean is to be over 1.5 ps; give a shorter time"));
   }
   EXPECT_EQ(run("compare r r --page p.html --mean 1").code, 0) << slurp(dir / "stderr.txt");
 }
