@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,29 @@ Kept kept_by(const Load& load) {
   return out;
 }
 
+// The axes along and about which a clamp holds its elements for good.
+Kept held_by(const GripLoad& grip) {
+  Kept out{};
+  const std::optional<LoadEffect> effect = grip.effect();
+  if (!effect || grip.slide_free || grip.spin_free || grip.tilt_free) return out;
+  for (std::size_t axis = 0; axis < out.size(); ++axis) out[axis] = effect->axes[axis].is == LoadComponent::Is::held;
+  return out;
+}
+
+// Whether a load that fixes elements holds one along or about an axis where its clamp moves it. A clamp that turns or
+// tilts moves its elements sideways too.
+bool contradicts(const Load& fix, const Kept& clamp) {
+  const std::optional<LoadEffect> effect = fix.effect();
+  if (!effect) return true;
+  const std::array<std::array<std::size_t, 3>, 6> needs = {
+      {{0, 4, 5}, {1, 3, 5}, {2, 3, 4}, {3, 3, 3}, {4, 4, 4}, {5, 5, 5}}};
+  for (std::size_t axis = 0; axis < needs.size(); ++axis)
+    if (effect->axes[axis].is_kept())
+      for (const std::size_t need : needs[axis])
+        if (!clamp[need]) return true;
+  return false;
+}
+
 bool is_felt(const LoadEffect& effect, const Kept& kept) {
   for (std::size_t axis = 0; axis < kept.size(); ++axis) {
     if (effect.axes[axis].is != LoadComponent::Is::loaded) continue;
@@ -59,14 +83,14 @@ void refuse_loads(const Scene& scene, const Topology& topology, const Interactio
   if (all.empty()) return;
   const auto count = static_cast<std::size_t>(topology.elements());
   std::vector<Kept> kept(count, Kept{});
-  std::vector<bool> clamped(count);
+  std::vector<std::optional<Kept>> clamped(count);
   for (const auto& load : all) {
     const Kept own = kept_by(*load);
-    const bool is_grip = dynamic_cast<const GripLoad*>(load.get()) != nullptr;
+    const auto* grip = dynamic_cast<const GripLoad*>(load.get());
     for (const int e : load->elements) {
       const auto i = static_cast<std::size_t>(e);
       for (std::size_t axis = 0; axis < own.size(); ++axis) kept[i][axis] = kept[i][axis] || own[axis];
-      clamped[i] = clamped[i] || is_grip;
+      if (grip) clamped[i] = held_by(*grip);
     }
   }
   std::map<std::string, int> number;  // tables of each name so far
@@ -78,10 +102,11 @@ void refuse_loads(const Scene& scene, const Topology& topology, const Interactio
     bool loads = false, felt = false;
     int at = -1;
     for (const auto& load : own) {
-      const bool moves =
-          dynamic_cast<const FixLoad*>(load.get()) || dynamic_cast<const PrescribedRotation*>(load.get());
+      const bool fixes = dynamic_cast<const FixLoad*>(load.get()) != nullptr,
+                 turns = dynamic_cast<const PrescribedRotation*>(load.get()) != nullptr;
       for (const int e : load->elements)
-        if (moves && clamped[static_cast<std::size_t>(e)])
+        if (const auto& clamp = clamped[static_cast<std::size_t>(e)];
+            clamp && (turns || (fixes && contradicts(*load, *clamp))))
           throw InputError(place, fmt::format("says how {} moves, and a [[grip]] does as well", named(topology, e)),
                            "name other elements, or leave it to the grip");
       const std::optional<LoadEffect> effect = load->effect();

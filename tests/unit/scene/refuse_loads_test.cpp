@@ -61,9 +61,14 @@ TEST(RefuseLoads, LetsStandWhatActsOnSomething) {
 }
 
 TEST(RefuseLoads, NamesElementsThatAClampAndALoadMove) {
+  const std::string pulled = "z = { displacement_nm = [[0, 0], [1, 0.1]] }\n";
   for (const std::string& twice :
-       {clamp("upper") + fix("[-1]"), clamp("upper") + rotate, fix("\"all\"") + clamp("lower")})
+       {clamp("upper", pulled) + fix("[-1]"), clamp("upper") + rotate,
+        fix("\"all\"") + clamp("lower", "about_z = { rotation_deg = [[0, 0], [1, 1]] }\n")})
     EXPECT_THAT(refused(twice), HasSubstr("a [[grip]] does as well")) << twice;
+  // Both hold the same.
+  for (const std::string& once : {clamp("upper") + fix("[-1]"), clamp("upper", pulled) + fix("\"all\"", "axes = \"xy\"\n")})
+    EXPECT_EQ(refused(once), "") << once;
   EXPECT_EQ(refused(clamp("upper", "tubes = [0]\n") + load("fix", "[-1]", "tubes = [1, 2]\n")), "");
 }
 
