@@ -124,7 +124,7 @@ Draft::~Draft() {
 void Draft::take_permissions() {
   struct stat old {};
   if (::lstat(path_.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return;
-  if (::fchmod(file_.get(), old.st_mode & 0777) == 0) return;
+  if (uninterrupted([&] { return ::fchmod(file_.get(), old.st_mode & 0777); }) == 0) return;
   if (!not_done_here(errno)) throw error_of(path_, not_written);
   system_note = "the file system keeps no permissions: files have those that it gives them";
 }
