@@ -237,7 +237,7 @@ TEST(Tether, BadOnesAreRefused) {
   EXPECT_THAT(message(tether("tube = 1\nelements = [0]\n")), HasSubstr("tether.to_point_nm: is missing"));
   EXPECT_THAT(message(tether(between + "to_point_nm = [0, 0, 0]\n")), HasSubstr("a tether has two ends"));
   EXPECT_THAT(message(tether("tube = 1\nelements = [0, 0]\nto_point_nm = [0, 0, 0]\n")), HasSubstr("names 0 twice"));
-  EXPECT_THAT(message(tether("tube = 1\nelements = [-1, 9]\nto_point_nm = [0, 0, 0]\n")), HasSubstr("9 is an element of tube 1 that is named already"));
+  EXPECT_THAT(message(tether("tube = 1\nelements = [-1, 4]\nto_point_nm = [0, 0, 0]\n")), HasSubstr("4 is an element of tube 1 that is named already"));
   EXPECT_THAT(message(tether("tube = 7\nelements = [0]\nto_point_nm = [0, 0, 0]\n")), HasSubstr("there is no tube 7"));
   EXPECT_THAT(message(tether("tube = 1\nelements = [10]\nto_point_nm = [0, 0, 0]\n")), HasSubstr("tube 1 has no element 10"));
   EXPECT_THAT(message(tether(to_point, "rest_nm = 3\nbreaks_at_nm = 2\n")), HasSubstr("tether.breaks_at_nm"));
