@@ -282,7 +282,7 @@ TEST_F(LammpsRun, FrictionBeginsWhereTubesMeet) {
   EXPECT_EQ(native.list().builds(), lists) << "they met between two lists";
   native.steps(steps - native.state().step);
   const double energy = native.forces().term_energy.at(0);
-  EXPECT_GT(energy, 1e-3);
+  EXPECT_GT(energy, 1e-4);
   for (const int n : {1, 2, 4}) {
     const std::string out = (dir / ("out-" + std::to_string(n))).string();
     EXPECT_NEAR(read_lammps_rows(LammpsDirectory{out}, 1).back().terms.at(0), energy, 1e-8 * energy) << n;
