@@ -226,7 +226,8 @@ def tables_split_by_tubes(case):
             "a perturbed rope has many states of rest near one another")
     halves = [list(range(n // 2)), list(range(n // 2, n))]
     if scene.list("load"):
-        loads = [{**load, "tubes": half} for load in scene["load"] for half in halves]
+        parts = [[[t for t in half if t in load.get("tubes", half)] for half in halves] for load in scene["load"]]
+        loads = [{**load, "tubes": part} for load, both in zip(scene["load"], parts) for part in both if part]
         one, two = scene, scene.with_keys(load=loads)
     else:
         skip_if(scene.has_strands(), "its tubes are cut at random")
