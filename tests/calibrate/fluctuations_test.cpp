@@ -161,8 +161,8 @@ TEST(Fluctuations, NeedFramesAndBonds) {
 }
 
 // 200 chains of this program at 300 K: their own stiffness lies within the standard error in 68 % of them, within
-// two standard errors of that share, 6.6 %. The seed was fixed before the first run. Of 120 frames in place of 240
-// the errors are a tenth too small: they cover 60 %.
+// two standard errors of that share, 6.6 %. The seed was fixed before the first run, the number of
+// frames after it: with 120 in place of 240 the errors of EA cover 60 %.
 TEST(Fluctuations, StandardErrorsCoverTheStiffnessOfTheModel) {
   constexpr int chains = 200, elements = 6;
   Topology topology;
