@@ -385,8 +385,10 @@ def error_by_errors_or_by_hand(case):
         by_hand, bent = 0.5 * abs(plus - minus), 0.5 * abs(plus + minus - 2 * here)
         if bent > by_hand:  # not linear
             by_hand = math.hypot(by_hand, bent)
-        if entry["standard_error"] is not None and math.isfinite(by_hand):
-            near(f"error of {column} by {name}.{key}", entry["standard_error"], by_hand, 1e-4, 1e-8 * (1 + abs(here)))
+        # Unlike tubes have an error of their own besides.
+        part = next((v for of, v in entry["parts"].items() if of.endswith("." + key)), None)
+        if part is not None and math.isfinite(by_hand):
+            near(f"error of {column} by {name}.{key}", abs(part), by_hand, 1e-4, 1e-8 * (1 + abs(here)))
 
 
 def tables_of(scene, name):
