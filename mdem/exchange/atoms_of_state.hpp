@@ -19,8 +19,8 @@ struct AtomicState {
   Topology topology;
   State state;
   Interaction interaction;
-  std::vector<char> held;    // of each element: it is held or driven in the run
-  std::vector<char> broken;  // of each element: its tube has broken behind it; empty: none has
+  std::vector<char> held;    // whether each element is held or driven in the run
+  std::vector<char> broken;  // whether the tube of each element has broken behind it; empty: no tube has
   std::string title;         // "RUN at 243 ps"
 };
 

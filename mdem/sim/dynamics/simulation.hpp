@@ -215,7 +215,7 @@ class Simulation {
   NeighbourList list_;
   std::int64_t list_age_ = 0;     // steps since the list was built
   std::vector<Change> changes_;   // since then, of cached_elements each
-  std::vector<Fastest> fastest_;  // fastest elements in the last drift, of cached_elements each
+  std::vector<Fastest> fastest_;  // fastest element of each cached_elements in the last drift
   ForceEngine engine_;
   Forces forces_;                       // with the loads
   std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
