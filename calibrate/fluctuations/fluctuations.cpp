@@ -150,7 +150,7 @@ Fluctuation FluctuationSums::evaluate(double temperature) const {
 
   const Row all = mean_of(rows);
   const std::vector<Numbers> found = all_of(all, windows, element_length_, kT);
-  // What each frame adds to each number: by leaving it out.
+  // Contribution of each frame to each number, found by leaving the frame out.
   std::vector<std::vector<Numbers>> without;
   const auto n = static_cast<double>(frames_);
   for (const Row& row : rows) {

@@ -58,7 +58,7 @@ TubeSection TubeCurve::at(double s) const {
 
 TubeSection TubeCurve::at_break(std::size_t k, double u) const {
   const Bond& b = bonds_[k];
-  // Where both bonds of an element have broken, it stands alone, at rest.
+  // An element whose bonds have both broken stands alone, at rest.
   const Bond* of_piece = nullptr;
   if (u < 0.5 && k > 0 && !bonds_[k - 1].broken) of_piece = &bonds_[k - 1];
   if (u >= 0.5 && k + 1 < bonds_.size() && !bonds_[k + 1].broken) of_piece = &bonds_[k + 1];

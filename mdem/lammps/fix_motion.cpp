@@ -500,7 +500,7 @@ void FixNve::initial_integrate(int) {
 
 namespace {
 
-// What the numbers of a row say of the account of energy.
+// The account of energy in the numbers of a row.
 struct Reading {
   EnergyMark mark;
   double kinetic = 0, bonds = 0, contact = 0;

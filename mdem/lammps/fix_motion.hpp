@@ -51,7 +51,7 @@ class FixMotion : public LMP::Fix {
   void unpack_restart(int i, int part) override;
   int size_restart(int i) override { return static_cast<int>(memory_of(i).size()) + 1; }
   int maxsize_restart() override { return longest_ + 1; }
-  // What force terms have told on this rank since the last call, as a list of numbers.
+  // Events of force terms on this rank since the last call, as a list of numbers.
   std::vector<double> take_events();
 
  protected:

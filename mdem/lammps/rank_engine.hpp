@@ -79,7 +79,7 @@ class RankEngine {
   std::vector<double> memory() const { return engine_.terms().memory(); }
   // For the next build: the records of all elements here, copies among them. At the first one the accounts as well.
   void set_memory(std::vector<double> memory) { next_memory_ = std::move(memory); }
-  // What has happened on this rank since the last call.
+  // Events on this rank since the last call.
   std::vector<TermEvent> take_events();
 
   // Energies of this rank's pairs and bonds in the last evaluation.

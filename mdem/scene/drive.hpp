@@ -86,7 +86,7 @@ class Drive {
   // Why its elements cannot be split in two, and why they cannot be of any other length; empty: they can.
   virtual std::string why_not_split() const { return ""; }
   virtual std::string why_not_lengthened() const { return why_not_split(); }
-  // What LAMMPS cannot carry; no key: it can.
+  // The key that LAMMPS cannot carry, and why; without a key it carries the drive.
   struct NotForLammps {
     std::string key;     // key of the scene, or the table
     std::string reason;  // behind "is not for LAMMPS: "

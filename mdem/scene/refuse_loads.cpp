@@ -26,7 +26,7 @@ Kept kept_by(const Load& load) {
   if (!effect) return out;
   const auto* grip = dynamic_cast<const GripLoad*>(&load);
   const auto* turned = dynamic_cast<const PrescribedRotation*>(&load);
-  // What another load holds for all tubes as one body leaves each of them free.
+  // A load that holds all tubes as one body leaves each tube free.
   for (std::size_t axis = 0; axis < out.size(); ++axis) {
     const LoadComponent& c = effect->axes[axis];
     out[axis] = c.is_kept() && (c.each || grip || turned);

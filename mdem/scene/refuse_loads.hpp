@@ -1,4 +1,4 @@
-// What one table of a scene does to an element and another one undoes.
+// Refuses scenes in which one table undoes the load or the motion that another one gives to an element.
 #pragma once
 
 #include "scene/scene.hpp"

@@ -550,7 +550,7 @@ TEST_F(LammpsRun, GoesOnFromTheLastStateOnAnyNumberOfRanks) {
   }
 }
 
-// LAMMPS's own restart files, also one for each rank; with links that break, which elements take along.
+// LAMMPS's own restart files, also one for each rank. Links that break travel with their elements.
 class LammpsRestart : public LammpsRun, public ::testing::WithParamInterface<bool> {};
 INSTANTIATE_TEST_SUITE_P(AndLinks, LammpsRestart, ::testing::Bool());
 TEST_P(LammpsRestart, FilesGoOnOnAnyNumberOfRanks) {

@@ -425,7 +425,7 @@ Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::func
   sync_to_host();
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
   constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
-  constexpr double no_force = 1e-2;    // part of the goal: what rests here without a minimum rests on a saddle
+  constexpr double no_force = 1e-2;    // part of the goal: a state with less force that is no minimum is a saddle
   constexpr long least_iterations = 300;
   constexpr double least_fall = 1e-4;        // of the energy of bonds and contact, that is followed
   constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
