@@ -198,6 +198,7 @@ int check_command(const CheckArguments& a) {
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
+  if (const std::string what = not_foreseen(scene, p); !what.empty()) fmt::print("note: {}\n", what);
   if (const auto helix = helix_ahead(scene, p)) fmt::print("note: {}\n", *helix);
   if (const auto turn = quasi_static(scene, p)) fmt::print("note: {}\n", words_of(*turn));
   say_limits(scene, p);

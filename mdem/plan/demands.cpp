@@ -61,7 +61,11 @@ DemandsAhead::Range DemandsAhead::Range::moved(double one, double other) const {
 }
 
 DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t type)
-    : law_(p.topology.types[type]), bond_(p.topology.types[type].bond), drives_(end_drives(p.loads, p.topology)) {
+    : law_(p.topology.types[type]),
+      bond_(p.topology.types[type].bond),
+      drives_(end_drives(p.loads, p.topology)),
+      terms_(p),
+      type_(static_cast<int>(type)) {
   tubes_ = p.topology.tubes();
   for (const End end : {lower_end, upper_end})
     for (std::size_t axis = 0; axis < 6; ++axis) loads_[end][axis] = load_of_each(drives_, end, axis);
@@ -84,8 +88,9 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
   for (const auto& load : p.loads)
     if (const auto effect = load->effect(); effect && end_drives(*load, p.topology).empty())
       inner_.push_back(*effect);
-  if (scene.start.temperature > 0) {
-    const double kt = units::boltzmann * scene.start.temperature, a = p.topology.types[type].element_length;
+  if (const double warmest = std::max(scene.start.temperature, scene.bath() ? scene.bath()->temperature.largest() : 0);
+      warmest > 0) {
+    const double kt = units::boltzmann * warmest, a = p.topology.types[type].element_length;
     warm_curvature_ = std::sqrt(kt / (bond_.bend * a));
     warm_twist_ = std::sqrt(kt / (bond_.twist * a));
   }
@@ -238,7 +243,17 @@ Demands DemandsAhead::at(double time) const {
   out.strain += rope_radius_ * bent / length_;
   out.pressed += rope_radius_ * bent / length_;
   out.twist += warm_twist_;
-  if (const double moment = force * length_ + std::hypot(sideways(3, time), sideways(4, time)); begun && moment > 0)
+  double moment = begun ? force * length_ + std::hypot(sideways(3, time), sideways(4, time)) : 0;
+  if (begun && terms_.any()) {
+    const TermPulls::Pulls pulls = terms_.at(time, type_);
+    const auto more_strain = [&](double tension) {
+      return law_.strain_under(pull + tension, 0) - law_.strain_under(pull, 0);
+    };
+    if (pulls.most > 0) out.strain += more_strain(pulls.most);
+    if (pulls.least < 0) out.pressed -= more_strain(pulls.least);
+    moment += pulls.moment;
+  }
+  if (moment > 0)
     out.curvature += law_.curvature_under(moment);
   return out;
 }

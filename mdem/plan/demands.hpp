@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "plan/rope_section.hpp"
+#include "plan/term_pulls.hpp"
 #include "plan/tube_law.hpp"
 #include "scene/prepare.hpp"
 #include "sim/dynamics/end_drives.hpp"
@@ -57,6 +58,8 @@ class DemandsAhead {
   BondStiffness bond_;
   EndDrives drives_;
   RopeSection section_;
+  TermPulls terms_;
+  int type_ = 0;
   std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
   Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
   std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
