@@ -66,10 +66,12 @@ void say_limits(const Scene& scene, const Prepared& p) {
   const std::vector<Limits> all = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits;
   for (std::size_t type = 0; type < all.size(); ++type) {
     std::string text;
-    for (const LimitKind& kind : limit_kinds())
-      if (all[type].*kind.limit > 0)
-        text +=
-            fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+    for (const LimitKind& kind : limit_kinds()) {
+      if (!(all[type].*kind.limit > 0)) continue;
+      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+      const double pressed = kind.limit == &Limits::strain ? all[type].compression : 0;
+      if (pressed > 0 && pressed != all[type].strain) text += fmt::format(" and {:.4g}", -pressed);
+    }
     fmt::print("watched{}: {}\n", all.size() > 1 ? " in " + scene.sets[type].name : "",
                text.empty() ? "nothing" : text);
   }

@@ -265,7 +265,7 @@ TEST(Demands, OfARopeThatWindsAtFreeLengthAreOfBothSigns) {
 }
 
 Ahead tethered(const std::string& more) {
-  return Ahead("perturbation_nm = 0\n[bond]\nlaw = \"harmonic\"\n[contact]\nlaw = \"none\"\n" + more);
+  return Ahead("spacing_nm = 1.7\n[bond]\nlaw = \"harmonic\"\n[contact]\nlaw = \"none\"\n" + more);
 }
 
 // Hooke's law gives the tension of a tube and a tether in line, whose other end is fixed: k d EA/L / (k + EA/L) for
