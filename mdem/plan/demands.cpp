@@ -44,21 +44,6 @@ double helix(double radius, double winding) {
 
 }  // namespace
 
-double rope_radius_of(const Prepared& p) {
-  // At the lower end: the middle of a rope that begins bent aside is not its axis.
-  const auto end_of = [&](int tube) -> Vector3 {
-    return p.state.position[static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(tube)])];
-  };
-  Vector3 mean = Vector3::Zero();
-  int strands = 0;
-  for (int t = 0; t < p.topology.tubes(); ++t)
-    if (p.topology.begins_strand(t)) mean += end_of(t), ++strands;
-  double largest = 0;
-  for (int t = 0; t < p.topology.tubes(); ++t)
-    if (p.topology.begins_strand(t)) largest = std::max(largest, (end_of(t) - mean / strands).head<2>().norm());
-  return largest;
-}
-
 // One reading of the rope: its winding and length, the twist and the strain of its tubes.
 struct DemandsAhead::At {
   double winding = 0;
@@ -85,12 +70,17 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
   for (std::size_t axis = 0; axis < moved_aside_.size(); ++axis) moved_aside_[axis] = moved_apart(drives_, axis);
   for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
   period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
-  rope_radius_ = tubes_ > 1 ? rope_radius_of(p) : 0.0;
+  upright_ = stand_upright(p.state);
+  if (upright_) section_ = RopeSection(p);
+  rope_radius_ = section_.radius();
   column_ = std::pow(units::pi * (rope_radius_ + p.topology.largest_radius()) / length_, 2);
   if (tubes_ > 6) pressure_per_slope4_ = bond_.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) / 8;
   length_kept_ = is_kept_between(drives_, LoadEffect::z);
-  upright_ = stand_upright(p.state);
-  for (const EndDrive& d : drives_) keeps_tilt_ = keeps_tilt_ || d.does.keeps_tilt;
+  turn_kept_ = is_kept_between(drives_, LoadEffect::about_z);
+  for (const EndDrive& d : drives_) {
+    keeps_tilt_ = keeps_tilt_ || d.does.keeps_tilt;
+    relaxes_spins_ = relaxes_spins_ || d.does.relaxes_spins;
+  }
   for (const auto& load : p.loads)
     if (const auto effect = load->effect(); effect && end_drives(*load, p.topology).empty())
       inner_.push_back(*effect);
@@ -178,6 +168,13 @@ double DemandsAhead::sideways(std::size_t axis, double time) const {
   return out;
 }
 
+double DemandsAhead::clinging(double couple, double more) const {
+  if (turn_kept_ || more != 0) return winding_ + more;
+  return section_.winding_under(
+      couple, bond_, relaxes_spins_,
+      length_kept_ ? RopeSection::Tubes::cling_at_kept_length : RopeSection::Tubes::cling, winding_);
+}
+
 void DemandsAhead::add(const At& what, Demands& out) const {
   const double slope = rope_radius_ * what.winding;
   double curvature = helix(rope_radius_, what.winding);
@@ -198,6 +195,8 @@ Demands DemandsAhead::at(double time) const {
   // As the ends keep it; without them, as it starts.
   const double more = turned(time), winding = winding_ + more;
   const double twist = twist_.farthest(more);
+  const double clings = begun ? clinging(couple, more) : winding_;
+  const Range wound = Range().moved(section_.outer_strain(clings, winding_), section_.inner_strain(clings, winding_));
   const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
   double stretched = 0;  // extension by the way aside
   double shortened = 0;  // beyond what a column bears
@@ -206,23 +205,25 @@ Demands DemandsAhead::at(double time) const {
                  along = 1 + (straight_ && more == 0 && aside == 0 ? drawn : std::max(drawn, -column_));
     stretched = std::max(0.0, drawn);
     shortened = std::max(0.0, -drawn - column_);
-    const double outer = std::hypot(along, rope_radius_ * winding) / std::hypot(1, rope_radius_ * winding_) - 1;
+    const double outer = std::hypot(along, rope_radius_ * clings) / std::hypot(1, rope_radius_ * winding_) - 1;
     add({winding, twist, strain_.moved(along - 1, outer), bond_.stretch * std::max(0.0, outer)}, out);
   } else if (!begun) {
     add({winding, twist, strain_, 0}, out);
   } else {
     const double strain = pull != 0 ? law_.strain_under(pull, couple != 0 ? 0 : twist) : 0;
-    add({winding, couple != 0 ? 0 : twist, {strain, strain}, pull}, out);
+    add({winding, couple != 0 ? 0 : twist, wound.moved(strain, strain), pull}, out);
   }
   if (couple != 0) {
     const double twisted = law_.twist_under(couple, 0),
-                 strain = !length_kept_ && pull != 0 ? law_.strain_under(pull, twisted) : 0;
+                 drawn = !length_kept_ && pull != 0 ? law_.strain_under(pull, twisted) : 0;
+    const Range strain = length_kept_ ? Range() : wound.moved(drawn, drawn);
     // The rope as a whole winds no farther than by Hooke's law where its tubes give way.
-    const double by_hooke = couple / bond_.twist,
-                 winds = std::fabs(twisted) < std::fabs(by_hooke) ? twisted : by_hooke;
-    add({winds, twisted, {strain, strain}, pull}, out);
-    if (std::fabs(twisted) < law_.largest_twist())
-      add({winding_ + winds, twist_.farthest(twisted), {strain, strain}, pull}, out);
+    const double by_hooke = couple / bond_.twist;
+    double winds = std::fabs(twisted) < std::fabs(by_hooke) ? twisted : by_hooke;
+    if (relaxes_spins_) winds = section_.winding_under(couple, bond_, true, RopeSection::Tubes::slide);
+    add({winds, twisted, strain, pull}, out);
+    if (std::fabs(twisted) < law_.largest_twist() && !relaxes_spins_)
+      add({winding_ + winds, twist_.farthest(twisted), strain, pull}, out);
   }
   // What bends each tube beside the winding.
   double bent = 0, force = std::hypot(sideways(0, time), sideways(1, time));

@@ -4,7 +4,9 @@
 // they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its own bonds
 // bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between what they were
 // and nothing, and the larger of both sums counts. Everything is even along the rope, and the rope as a whole winds
-// no farther than its tubes twist. Ends that come nearer press the tubes up to the strain at which a column of the
+// no farther than its tubes twist. Where their spins are relaxed it winds until the tubes, which slide on one
+// another, bear the couple by their bending. A rope whose length is free and that winds draws its outer tubes out and
+// presses its inner ones as long as they do not slide (rope_section.hpp). Ends that come nearer press the tubes up to the strain at which a column of the
 // rope's width buckles, and bend them from there on; tubes that begin straight and cold may stay straight, and are
 // pressed all the way as well. These are upper estimates of motions without shocks.
 #pragma once
@@ -12,6 +14,7 @@
 #include <array>
 #include <vector>
 
+#include "plan/rope_section.hpp"
 #include "plan/tube_law.hpp"
 #include "scene/prepare.hpp"
 #include "sim/dynamics/end_drives.hpp"
@@ -47,17 +50,19 @@ class DemandsAhead {
   double turned(double time) const;  // rad/nm, since the start
   double axial(std::size_t axis, double time) const;
   double sideways(std::size_t axis, double time) const;
+  double clinging(double couple, double more) const;  // rad/nm: winding of a rope whose tubes do not slide
   void add(const At& what, Demands& out) const;
 
   TubeLaw law_;
   BondStiffness bond_;
   EndDrives drives_;
+  RopeSection section_;
   std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
   Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
   std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
   std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
-  bool length_kept_ = false, keeps_tilt_ = false, upright_ = true, straight_ = true;
+  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, keeps_tilt_ = false, upright_ = true, straight_ = true;
   int tubes_ = 0;
   double warm_curvature_ = 0, warm_twist_ = 0;
   // The start.
@@ -65,8 +70,5 @@ class DemandsAhead {
   double bent_ = 0, winding_ = 0;  // 1/nm, beside that of the winding (rad/nm) of the rope
   std::vector<double> times_;
 };
-
-// nm: distance of the farthest tube from the line through the mean of all, at the start.
-double rope_radius_of(const Prepared& prepared);
 
 }  // namespace ropewalk

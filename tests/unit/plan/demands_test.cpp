@@ -199,6 +199,70 @@ TEST(Demands, OfACoupleAreThoseOfTheTubeThatBearsIt) {
   }
 }
 
+// Runs of 7 and 19 tubes of 20 nm under 12 nN nm with relaxed spins come to 196 and 138 degrees and to 0.0640 and
+// 0.0582 of curvature per nm, and bind their middle tube by 0.0065 and 0.0035 of strain before it has slid. One of 7
+// tubes of 24 nm, loaded within 2 ps, presses it by 0.0104.
+TEST(Demands, OfRelaxedSpinsAreThoseOfBentTubes) {
+  struct Case {
+    int tubes;
+    double degrees, curvature, strain;
+  };
+  for (const Case& c : {Case{7, 196, 0.0640, 0.0065}, {19, 138, 0.0582, 0.0035}}) {
+    SCOPED_TRACE(c.tubes);
+    const Scene scene = scene_of_text(
+        fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = {}\n"
+                    "length_nm = 20\n[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\nhold_ps = 60\n"
+                    "geometric_only = true\n",
+                    c.tubes),
+        "s.toml");
+    const Prepared p = prepare(scene);
+    const Demands most = DemandsAhead(scene, p).largest();
+    EXPECT_NEAR(most.curvature, c.curvature, 0.08 * c.curvature);
+    EXPECT_NEAR(RopeSection(p).winding_under(12 * units::nN_nm, p.topology.types[0].bond, true,
+                                             RopeSection::Tubes::slide) *
+                    free_length(scene, p.topology, 0) / units::degree,
+                c.degrees, 0.06 * c.degrees);
+    EXPECT_GT(most.pressed, c.strain);
+    EXPECT_LT(most.pressed, 8 * c.strain);
+    EXPECT_GT(most.strain, 0.003);
+  }
+}
+
+// Where both ends turn together and come nearer, the strain of outer and inner tubes is that of the geometry; where
+// the couple does it, the rope that clings winds less far than its tubes alone.
+TEST(Demands, OfARopeThatWindsAtFreeLengthAreOfBothSigns) {
+  const auto ends = [](const char* about_z) {
+    return fmt::format("[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = \"free\"\nabout_z = {}\n",
+                       about_z);
+  };
+  const Ahead turned(ends("{ rotation_deg = [[0, 0], [100, 300]] }"));
+  const double spacing2 = turned.p.spacing * turned.p.spacing,
+               slope2 = std::pow(300 * units::degree / free_length(turned.scene, turned.p.topology, 0), 2) * spacing2;
+  EXPECT_NEAR(turned.demands.at(100).strain, slope2 / 14, 0.03 * slope2 / 14);
+  EXPECT_NEAR(turned.demands.at(100).pressed, 3 * slope2 / 7, 0.03 * 3 * slope2 / 7);
+  EXPECT_EQ(turned.demands.at(0).pressed, Ahead("").demands.at(0).pressed);
+
+  const RopeSection section(turned.p);
+  const BondStiffness& bond = turned.p.topology.types[0].bond;
+  for (const double start : {0.0, 0.04, -0.04})
+    for (const double nN_nm : {-10.0, 0.0, 10.0})
+      for (const bool relaxed : {false, true}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", start, nN_nm, relaxed));
+        const double mean = 6 * spacing2 / 7, variance = 6 * spacing2 * spacing2 / 7 - mean * mean,
+                     w = section.winding_under(nN_nm * units::nN_nm, bond, relaxed, RopeSection::Tubes::cling, start),
+                     twist = relaxed ? 0 : bond.twist;
+        EXPECT_NEAR(nN_nm * units::nN_nm,
+                    twist * w + 0.5 * bond.stretch * variance * (w * w - start * start) * w +
+                        2 * bond.bend * mean * w * w * w,
+                    1e-6);
+        if (nN_nm != 0 && start == 0) {
+          EXPECT_GT(w * nN_nm, 0);
+          EXPECT_LT(std::fabs(w), std::fabs(section.winding_under(nN_nm * units::nN_nm, bond, relaxed,
+                                                                  RopeSection::Tubes::slide)));
+        }
+      }
+}
+
 // A tube of (10,10) bears no 20 nN nm: beyond its collapse the torque stays. Runs come to 0.77 to 0.79 there, where
 // a bond slips.
 TEST(Demands, OfACoupleThatNoTubeBearsSaySo) {
