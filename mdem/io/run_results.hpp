@@ -60,7 +60,8 @@ std::string result_cells(const RunResults& results);
 // The same by name; NaN: the run has no such value.
 std::vector<double> result_values(const RunResults& results);
 
-// A sentence each: bending moment, torque and first break, strength, stored energy.
-std::vector<std::string> result_sentences(const RunResults& results);
+// A sentence each: bending moment, torque and first break, strength, stored energy. `errors`: of result_values(), nan
+// where none is known; empty: none is.
+std::vector<std::string> result_sentences(const RunResults& results, const std::vector<double>& errors = {});
 
 }  // namespace ropewalk

@@ -271,7 +271,11 @@ class FailureDrive : public Drive {
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     add_term(std::make_shared<TubeFailure>(law, topology), interaction);
   }
-  std::string why_not_split() const override { return "[failure] has limits of single bonds"; }
+  // Strain and moment count over a diameter of tube, whatever the bonds in it.
+  std::string why_not_split() const override {
+    return law.deviation > 0 ? "[failure] strain_deviation draws a strain for every bond, and of shorter elements others"
+                             : "";
+  }
   std::string why_not_lengthened() const override { return ""; }
 };
 

@@ -71,6 +71,15 @@ TEST(RunResults, BeyondALimitAreSaidToBe) {
   EXPECT_TRUE(std::isnan(run_results(twisted(1), {passed("strain", 0, 0)}, {}).stored_at_limit));
 }
 
+TEST(RunResults, KnownErrorsStandInTheSentences) {
+  const RunResults r = run_results(twisted(1), {}, {});
+  std::vector<double> errors;
+  for (const OutputColumn& c : result_columns())
+    errors.push_back(std::string(c.name) == "torque_max_nN_nm" ? 12.3 : NAN);
+  EXPECT_THAT(result_sentences(r, errors),
+              ::testing::Contains("Torque passed its maximum, 400 ± 12 nN nm, at 40°."));
+}
+
 TEST(RunResults, TorqueIsThatOfTheHeldEnds) {
   EXPECT_EQ(run_results(twisted(0.5), {}, {}).torque_max, 300) << "the mean of both";
   EXPECT_EQ(run_results(twisted(0), {}, {}).torque_max, 400) << "the lower end is free";
