@@ -50,7 +50,13 @@ class DemandsAhead {
   void add_times(const Schedule& course);
   double turned(double time) const;  // rad/nm, since the start
   double axial(std::size_t axis, double time) const;
+  double axial_inside(std::size_t axis, double time) const;  // the part of loads that are on no end
+  double bent_by_force(std::size_t axis, double time) const;  // eV, the bending moment of the forces along this axis
   double sideways(std::size_t axis, double time) const;
+  void read_inner(const Prepared& p);
+  RopeSection::Tubes clings() const {
+    return length_kept_ ? RopeSection::Tubes::cling_at_kept_length : RopeSection::Tubes::cling;
+  }
   double clinging(double couple, double more) const;  // rad/nm: winding of a rope whose tubes do not slide
   void add(const At& what, Demands& out) const;
 
@@ -63,9 +69,17 @@ class DemandsAhead {
   std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
   Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
   std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
-  std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
+  // A load on elements that are no ends.
+  struct Inner {
+    LoadEffect does;
+    double elements = 1;    // of one tube, the most
+    double from_lower = 0;  // nm, along the tube: of their middle
+  };
+  std::vector<Inner> inner_;
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
-  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, keeps_tilt_ = false, upright_ = true, straight_ = true;
+  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, winds_freely_ = false;
+  bool keeps_tilt_ = false, upright_ = true, straight_ = true;
+  std::array<std::array<bool, 6>, 2> kept_ = {};  // by end and axis
   int tubes_ = 0;
   double warm_curvature_ = 0, warm_twist_ = 0;
   // The start.
