@@ -84,6 +84,7 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
   if (tubes_ > 6) pressure_per_slope4_ = bond_.stretch / (0.5 * std::sqrt(3.0) * p.spacing * p.spacing) / 8;
   length_kept_ = is_kept_between(drives_, LoadEffect::z);
   turn_kept_ = is_kept_between(drives_, LoadEffect::about_z);
+  moves_ = scene.run.mode != RunOptions::Mode::relax;
   for (const EndDrive& d : drives_) {
     keeps_tilt_ = keeps_tilt_ || d.does.keeps_tilt;
     relaxes_spins_ = relaxes_spins_ || d.does.relaxes_spins;
@@ -198,19 +199,23 @@ double DemandsAhead::axial_inside(std::size_t axis, double time) const {
 
 double DemandsAhead::sideways(std::size_t axis, double time) const {
   double out =
-      std::max(std::fabs(loads_[upper_end][axis].value(time)), std::fabs(loads_[lower_end][axis].value(time)));
+      std::max(std::fabs(force_of(loads_[upper_end][axis], time)), std::fabs(force_of(loads_[lower_end][axis], time)));
   for (const Inner& load : inner_)
-    if (is_loaded(load.does, axis)) out += load.elements * std::fabs(load.does.axes[axis].course.value(time));
+    if (is_loaded(load.does, axis)) out += load.elements * std::fabs(force_of(load.does.axes[axis].course, time));
   return out;
+}
+
+double DemandsAhead::force_of(const Schedule& course, double time) const {
+  return course.value(time) + at_once(course.value(soon));
 }
 
 // Forces at an end bend a tube that the other end holds; forces inside one that both ends hold, where they do.
 double DemandsAhead::bent_by_force(std::size_t axis, double time) const {
-  double out = length_ * std::max(std::fabs(loads_[upper_end][axis].value(time)),
-                                  std::fabs(loads_[lower_end][axis].value(time)));
+  double out = length_ * std::max(std::fabs(force_of(loads_[upper_end][axis], time)),
+                                  std::fabs(force_of(loads_[lower_end][axis], time)));
   for (const Inner& load : inner_) {
     if (!is_loaded(load.does, axis)) continue;
-    const double force = load.elements * std::fabs(load.does.axes[axis].course.value(time)), at = load.from_lower,
+    const double force = load.elements * std::fabs(force_of(load.does.axes[axis].course, time)), at = load.from_lower,
                  rest = std::max(0.0, length_ - at);
     const bool lower = kept_[lower_end][axis], upper = kept_[upper_end][axis];
     out += force * (lower && upper ? at * rest / length_ : lower ? at : upper ? rest : length_);
@@ -241,7 +246,7 @@ Demands DemandsAhead::at(double time) const {
   Demands out;
   const bool begun = time > 0;
   const double couple = begun ? axial(LoadEffect::about_z, time) : 0,
-               pull = begun && upright_ ? axial(LoadEffect::z, time) : 0;
+               pull = begun && upright_ ? axial(LoadEffect::z, time) + at_once(axial(LoadEffect::z, soon)) : 0;
   // As the ends keep it; without them, as it starts.
   const double more = turned(time), winding = winding_ + more;
   const double twist = twist_.farthest(more);
@@ -260,7 +265,7 @@ Demands DemandsAhead::at(double time) const {
     // A force inside draws out what is below it and presses what is above.
     for (const Inner& load : inner_)
       if (begun && upright_ && is_loaded(load.does, LoadEffect::z)) {
-        const double force_there = load.elements * load.does.axes[LoadEffect::z].course.value(time),
+        const double force_there = load.elements * force_of(load.does.axes[LoadEffect::z].course, time),
                      part = std::min(1.0, load.from_lower / length_);
         strain = strain.moved(law_.strain_under((1 - part) * force_there, 0),
                               law_.strain_under(-part * force_there, 0));
@@ -303,7 +308,11 @@ Demands DemandsAhead::at(double time) const {
   out.twist += warm_twist_;
   if (begun) moment += std::hypot(sideways(3, time), sideways(4, time));
   if (begun && terms_.any()) {
-    const TermPulls::Pulls pulls = terms_.at(time, type_);
+    TermPulls::Pulls pulls = terms_.at(time, type_);
+    const TermPulls::Pulls first = terms_.at(0, type_);
+    pulls.least += at_once(first.least);
+    pulls.most += at_once(first.most);
+    pulls.moment += at_once(first.moment);
     const auto more_strain = [&](double tension) {
       return law_.strain_under(pull + tension, 0) - law_.strain_under(pull, 0);
     };

@@ -1,14 +1,16 @@
 // What the start and the loads of a scene ask of its tubes together, with their signs, at any time of the run.
 //
-// Where both ends are kept, a rope is as long and as wound as they ask for: by what it is at the start, and by what
-// they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its own bonds
-// bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between what they were
-// and nothing, and the larger of both sums counts. Everything is even along the rope, and the rope as a whole winds
-// no farther than its tubes twist. Where their spins are relaxed it winds until the tubes, which slide on one
-// another, bear the couple by their bending. A rope whose length is free and that winds draws its outer tubes out and
-// presses its inner ones as long as they do not slide (rope_section.hpp). Ends that come nearer press the tubes up to the strain at which a column of the
-// rope's width buckles, and bend them from there on; tubes that begin straight and cold may stay straight, and are
-// pressed all the way as well. These are upper estimates of motions without shocks.
+// Where both ends are kept, a rope is as long and as wound as they ask for: by what it is at the start, and by
+// what they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its
+// own bonds bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between
+// what they were and nothing, and the larger of both sums counts. Everything is even along the rope, and the
+// rope as a whole winds no farther than its tubes twist. Where their spins are relaxed it winds until the
+// tubes, which slide on one another, bear the couple by their bending. A rope whose length is free and that
+// winds draws its outer tubes out and presses its inner ones as long as they do not slide (rope_section.hpp).
+// Ends that come nearer press the tubes up to the strain at which a column of the rope's width buckles, and
+// bend them from there on; tubes that begin straight and cold may stay straight, and are pressed all the way as
+// well. A force that acts at once counts twice: what it moves goes as far again beyond its rest. These are
+// upper estimates of motions without other shocks.
 #pragma once
 
 #include <array>
@@ -53,6 +55,8 @@ class DemandsAhead {
   double axial_inside(std::size_t axis, double time) const;  // the part of loads that are on no end
   double bent_by_force(std::size_t axis, double time) const;  // eV, the bending moment of the forces along this axis
   double sideways(std::size_t axis, double time) const;
+  double force_of(const Schedule& course, double time) const;
+  double at_once(double force) const { return moves_ ? force : 0; }  // what a force from the start on adds to itself
   void read_inner(const Prepared& p);
   RopeSection::Tubes clings() const {
     return length_kept_ ? RopeSection::Tubes::cling_at_kept_length : RopeSection::Tubes::cling;
@@ -78,7 +82,7 @@ class DemandsAhead {
   std::vector<Inner> inner_;
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
   bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, winds_freely_ = false;
-  bool keeps_tilt_ = false, upright_ = true, straight_ = true;
+  bool moves_ = true, keeps_tilt_ = false, upright_ = true, straight_ = true;
   std::array<std::array<bool, 6>, 2> kept_ = {};  // by end and axis
   int tubes_ = 0;
   double warm_curvature_ = 0, warm_twist_ = 0;
