@@ -210,7 +210,7 @@ TEST(Demands, OfRelaxedSpinsAreThoseOfBentTubes) {
   };
   for (const Case& c : {Case{7, 196, 0.0640, 0.0065}, {19, 138, 0.0582, 0.0035}}) {
     SCOPED_TRACE(c.tubes);
-    const Scene scene = scene_of_text(
+    Scene scene = scene_of_text(
         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = {}\n"
                     "length_nm = 20\n[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\nhold_ps = 60\n"
                     "geometric_only = true\n",
