@@ -280,7 +280,8 @@ TEST(Demands, OfTethersAreWhatTheyPull) {
   const BondStiffness& bond = drawn.p.topology.types[0].bond;
   const auto last = static_cast<std::size_t>(drawn.p.topology.tube_begin[1] - 1);
   const double length = drawn.p.state.position[last].z() - drawn.p.state.position[0].z(),
-               in_line = bond.stretch / length, k = 20 * units::nN_nm, stretch = 30 - drawn.p.state.position[last].z() - 5;
+               in_line = bond.stretch / length, k = 20 * units::nN_nm,
+               stretch = 30 - drawn.p.state.position[last].z() - 5;
   const auto strain = [&](double by) { return k * by / (1 + k / in_line) / bond.stretch; };
   // What pulls from the start on swings as far beyond its rest.
   EXPECT_NEAR(drawn.demands.at(100).strain, 2 * strain(stretch), 0.02 * strain(stretch));
