@@ -52,7 +52,7 @@ class TermPulls {
   State start_;
   std::vector<std::unique_ptr<ForceTerm>> terms_;
   std::vector<OfTube> tubes_;
-  std::vector<std::array<char, 3>> held_;  // of each element, by axis
+  std::vector<std::array<char, 3>> held_;  // whether each element is held, by axis
 };
 
 }  // namespace ropewalk
