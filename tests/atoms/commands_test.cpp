@@ -315,6 +315,34 @@ frames_every_ps = 0.2
   EXPECT_NE(run("calibrate fluctuations warm --after 149").err.find("30 are needed"), std::string::npos);
 }
 
+// The atoms would stand in the way of the same command. What LAMMPS said stays where the message names it; a stop leaves nothing.
+TEST_F(Bridge, ARelaxationThatFailsLeavesNothingInItsOwnWay) {
+  make_run();
+  fs::create_directory(dir / "there");
+  const auto left = [&] {
+    std::string names;
+    for (const auto& entry : fs::directory_iterator(dir / "there"))
+      if (entry.path().filename() != "lmp") names += entry.path().filename().string() + " ";
+    return names;
+  };
+  const auto lammps = [&](const char* lines) {
+    spit(dir / "there/lmp", std::string("#!/bin/sh\n") + lines);
+    fs::permissions(dir / "there/lmp", fs::perms::owner_all);
+  };
+  lammps("kill -TERM $PPID\nsleep 60\n");
+  const Outcome stopped = run("atoms made -o there/a.data --relax", "ROPEWALK_LMP=$PWD/there/lmp");
+  EXPECT_EQ(stopped.code, 143) << stopped.err;
+  EXPECT_EQ(left(), "");
+  lammps("echo 'ERROR: no atoms today'\nexit 1\n");
+  const Outcome failed = run("atoms made -o there/a.data --relax", "ROPEWALK_LMP=$PWD/there/lmp");
+  EXPECT_EQ(failed.code, 3) << failed.err;
+  const std::string folder = left();
+  EXPECT_EQ(folder.rfind("ropewalk-", 0), 0u) << folder;
+  EXPECT_NE(failed.err.find("there/" + folder.substr(0, folder.size() - 1) + "/atoms.in"), std::string::npos)
+      << failed.err;
+  EXPECT_TRUE(fs::exists(dir / "there" / folder.substr(0, folder.size() - 1) / "atoms.out"));
+}
+
 // States below the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
 TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   const double a = shipped("cnt-5-5-tersoff").element_length;
