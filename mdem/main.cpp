@@ -217,7 +217,7 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--x", v.compare.x,
                 "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg, with "
                 "--torsion rotation_deg]");
-  c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
+  c->add_option("--y", v.compare.y, "Runs: columns, a chart each, such as torque_nN_nm, the mean of both ends [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_option(
@@ -303,7 +303,7 @@ void add_picture(CLI::App& app, Verbs& v) {
   c->add_option("--from", v.picture.from,
                 "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str();
-  c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
+  c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, or torque_nN_nm, the mean of both ends; twist_eV+bend_eV,Q makes two")
       ->delimiter(',');
   c->add_option("--x", v.picture.x,
                 "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");

@@ -1357,6 +1357,10 @@ tolerance = 0.2
   EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
+  ASSERT_EQ(run("picture r -o r.svg --curves torque_nN_nm").code, 0);
+  const std::string picture = slurp(dir / "r.svg");
+  for (const char* part : {"class=\"error e0\"", ">band: one standard error<"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
   const Outcome torsion = run("compare r --torsion --csv torsion.csv");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
   const std::string table = slurp(dir / "torsion.csv");
