@@ -21,7 +21,7 @@ const char* const usual[] = {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// In rows of a log, of its errors or of its means.
+// `rows` are those of the log of the run or of its errors.
 std::vector<double> values_in(const RunCurve& run, const std::string& column, const std::vector<LogRow>& rows) {
   return values_of(rows, curve_column(column, run.log).value);
 }

@@ -222,7 +222,7 @@ AxisRange x_range(const LineChart& chart) {
 
 // Bands and bars that would make the lines flat are cut.
 AxisRange y_of_lines_and_errors(const LineChart& chart) {
-  constexpr double most = 0.6;  // of the range of the lines, to either side
+  constexpr double most = 0.6;  // share of the range of the lines, to either side
   AxisRange lines, whole;
   for (const ChartLine& line : chart.lines)
     for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {

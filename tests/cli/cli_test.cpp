@@ -63,6 +63,18 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
   EXPECT_EQ(links.find("spacing_nm"), std::string::npos) << links;
   EXPECT_EQ(run("help '[run]'").out.find("[run]\n"), 0u);
+  ASSERT_EQ(run("new wide --kind bend").code, 0);
+  bool code = false;  // examples and formulas stay as they are
+  for (const std::string& text : {o.out, keys, run("run --help").out, run("compare --help").out, run("help damping").out,
+                                  run("help grip").out, run("help slip").out, slurp(dir / "wide.toml")}) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      code = code != (line.find("```") != std::string::npos);
+      const auto columns =
+          std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+      EXPECT_TRUE(code || columns <= 120) << line;
+    }
+  }
   const std::string length = run("help length_nm").out;
   for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
     EXPECT_NE(length.find(word), std::string::npos) << length;
