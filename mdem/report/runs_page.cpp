@@ -137,8 +137,8 @@ std::string end_text(const RunCurve& run, const std::string& column) {
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
-  for (const OutputColumn& c : limit_columns()) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
-  for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
+  for (const OutputColumn& c : limit_columns()) html += head_cell(c.name, c.meaning);
+  for (const std::string& c : columns) html += head_cell(c, curve_column(c, {}).meaning);
   html += "<th></th></tr></thead><tbody>\n";
   std::size_t k = 0;
   for (const RunCurve& run : runs) {
