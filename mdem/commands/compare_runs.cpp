@@ -44,7 +44,7 @@ std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictur
 // The chart of a --svg; `of`: the option that chose what is drawn.
 std::string drawn(const std::string& svg, const char* of) {
   if (svg.empty())
-    throw InputError({"", 0, of}, "has no two values to draw", "choose another column or more of the runs");
+    throw InputError({"", 0, of}, "has no two values to draw", "name another column, or more runs");
   return svg;
 }
 

@@ -190,7 +190,7 @@ std::string lammps_quoted(const std::string& text) {
   if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
   for (const char quote : {'"', '\''})
     if (text.find(quote) == std::string::npos) return quote + text + quote;
-  throw InputError({text, 0, ""}, "holds both kinds of quotes, and LAMMPS could not be told its name",
+  throw InputError({text, 0, ""}, "has both kinds of quotes in its name, which LAMMPS then cannot read",
                    "rename it without them");
 }
 
