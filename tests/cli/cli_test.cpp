@@ -1373,8 +1373,11 @@ tolerance = 0.2
   const std::string picture = slurp(dir / "r.svg");
   for (const char* part : {"class=\"error e0\"", ">band: one standard error<"})
     EXPECT_NE(picture.find(part), std::string::npos) << part;
-  const Outcome torsion = run("compare r --torsion --csv torsion.csv");
+  const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
+  EXPECT_THAT(torsion.out,
+              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+  EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
   const std::string table = slurp(dir / "torsion.csv");
   ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
   EXPECT_NEAR(std::stod(cells[2]), largest.at("error").get<double>(), 0.01 * largest.at("error").get<double>());
