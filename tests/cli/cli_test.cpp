@@ -1376,7 +1376,7 @@ tolerance = 0.2
   const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
   EXPECT_THAT(torsion.out,
-              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+              HasSubstr("one point, so torsion.svg shows its torque_nN_nm against rotation_deg"));
   EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
   const std::string table = slurp(dir / "torsion.csv");
   ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
