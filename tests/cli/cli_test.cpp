@@ -1368,8 +1368,11 @@ tolerance = 0.2
   EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
-  const Outcome torsion = run("compare r --torsion --csv torsion.csv");
+  const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
+  EXPECT_THAT(torsion.out,
+              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+  EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
   const std::string table = slurp(dir / "torsion.csv");
   ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
   EXPECT_NEAR(std::stod(cells[2]), largest.at("error").get<double>(), 0.01 * largest.at("error").get<double>());
