@@ -30,6 +30,17 @@ Mean mean_of(const std::vector<LoadTest>& tests, Value value) {
   return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : NAN};
 }
 
+bool has_errors(const LoadTestGroup& group) {
+  return group.tests.size() == 1 && !group.tests.front().errors.empty();
+}
+
+// The k-th value, with the error of a single run where it is known.
+Mean mean_of_value(const LoadTestGroup& group, std::size_t k) {
+  Mean mean = mean_of(group.tests, [k](const LoadTest& t) { return t.values[k]; });
+  if (has_errors(group)) mean.error = group.tests.front().errors[k];
+  return mean;
+}
+
 int followed(const LoadTestGroup& group) {
   return static_cast<int>(
       std::count_if(group.tests.begin(), group.tests.end(), [](const LoadTest& t) { return t.to_half; }));
@@ -76,12 +87,12 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
       line = chart.lines.end() - 1;
       line->bars = true;
     }
-    const Mean at = mean_at(g, x), drawn = mean_of(g.tests, [](const LoadTest&t) { return t.values.front(); });
+    const Mean at = mean_at(g, x), drawn = mean_of_value(g, 0);
     line->x.push_back(at.value);
     line->y.push_back(drawn.value);
     line->error.push_back(drawn.error);
   }
-  const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1; };
+  const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1 && !has_errors(g); };
   if (std::any_of(groups.begin(), groups.end(), one_seed))
     chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
   const auto beyond =
@@ -124,7 +135,7 @@ std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestG
     text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), mean_at(g, x).value);
     if (turns) text += fmt::format(",{:.6g}", turns_per_m(kind, g).value);
     for (std::size_t k = 0; k < kind.columns.size(); ++k) {
-      const Mean m = mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; });
+      const Mean m = mean_of_value(g, k);
       text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
     }
     text += "," + limit_cells(all_limits(g)) + "\n";
@@ -162,7 +173,7 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
                 ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
                 : "<td>–</td><td>–</td>";
     for (std::size_t k = 0; k < kind.columns.size(); ++k)
-      cell(mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; }));
+      cell(mean_of_value(g, k));
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
@@ -170,6 +181,8 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
   if (svg.empty()) return html;
   std::string caption =
       title_of(kind, x) + ". Bars: one standard error to either side, over runs that differ in their seed.";
+  if (std::any_of(groups.begin(), groups.end(), has_errors))
+    caption += " That of a single run is the one that <code>ropewalk errors</code> found.";
   if (!lines.empty()) caption += " Lines: " + escape_markup(lines) + ".";
   if (x == "beta_deg" && kind.yarn_law)
     caption += " Dashed: the law of yarns of long fibres, cos² of the angle of the outermost tubes.";

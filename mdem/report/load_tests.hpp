@@ -1,5 +1,5 @@
 // Ropes that were loaded until they failed: tables and figures with means and errors over runs that differ in their
-// seed.
+// seed, or of a single run with the errors that `ropewalk errors` found.
 #pragma once
 
 #include <string>
@@ -18,6 +18,7 @@ struct LoadTest {
   std::vector<double> values;  // those of LoadTestKind::columns
   bool to_half = false;        // the run went on until the load had fallen to half of the largest
   std::vector<LimitRecord> limits = {};
+  std::vector<double> errors = {};  // of the values, nan where none is known; empty: none is
 };
 
 // Runs that differ in their seed alone.

@@ -33,12 +33,6 @@ std::string with_powers(std::string text) {
   return escape_markup(text);
 }
 
-// Decimals that show two digits of the error.
-int decimals_of_error(double error) { return std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))); }
-
-// Nothing of the value is left at these decimals. An error that exceeds a value is no reason to hide it.
-bool vanishes(double value, int decimals) { return std::fabs(value) < 0.5 * std::pow(10.0, -decimals); }
-
 // The value with as many digits as its error allows, or with seven digits where it has no error.
 std::string value_text(const Quantity& q) {
   if (std::isnan(q.value)) return "–";
@@ -149,16 +143,6 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
     html += "</tr>\n";
   }
   return html + "</tbody></table></div></details>\n";
-}
-
-std::string measured_text(double value, double error) {
-  if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.7g}", value);
-  const int decimals = decimals_of_error(error);
-  if (vanishes(value, decimals)) return fmt::format("0 ± {:.2g}", error);
-  const std::string number = fmt::format("{:.{}f}", value, decimals);
-  // Small numbers of small errors are clearer with a power of ten.
-  if (decimals > max_decimals) return fmt::format("{:.10g} ± {:.2g}", value, error);
-  return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
 namespace {

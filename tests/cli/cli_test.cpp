@@ -1348,6 +1348,23 @@ tolerance = 0.2
   std::smatch cells;
   ASSERT_TRUE(std::regex_search(end, cells, std::regex("\"r\",1,[^,]+,([^,]+),([^,]+),"))) << end;
   EXPECT_NEAR(std::stod(cells[2]), torque.at("error").get<double>(), 0.01 * torque.at("error").get<double>());
+  // A maximum has its own error: of the largest torque of each run, not of the torques in one row.
+  const Json largest = found.at("results").at("torque_max_nN_nm");
+  EXPECT_GE(largest.at("value").get<double>(), torque.at("value").get<double>());
+  for (const char* part : {"statistics", "numerics", "parameters", "potential"})
+    EXPECT_GT(largest.at(part).get<double>(), 0) << part;
+  EXPECT_EQ(largest.at("runs_without"), 0);
+  EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
+      << o.out;
+  EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
+  const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
+  ASSERT_EQ(torsion.code, 0) << torsion.err;
+  EXPECT_THAT(torsion.out,
+              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+  EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
+  const std::string table = slurp(dir / "torsion.csv");
+  ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
+  EXPECT_NEAR(std::stod(cells[2]), largest.at("error").get<double>(), 0.01 * largest.at("error").get<double>());
   EXPECT_EQ(run("run rope.toml --out r --force --quiet").code, 0) << "all that errors has left is of the run";
 }
 

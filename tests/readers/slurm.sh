@@ -73,7 +73,7 @@ patiently is_done || fail "the array does not end"
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
 
 # One run in pieces: each job submits the next one.
-sed 's/^tubes = 1/tubes = 37/; s/^length_nm = 14/length_nm = 40/; s/^duration_ps = .*/duration_ps = 2.5/' scenes/rope.toml > scenes/long.toml
+sed 's/^tubes = 1/tubes = 37/; s/^length_nm = 14/length_nm = 40/; s/^duration_ps = .*/duration_ps = 12/' scenes/rope.toml > scenes/long.toml
 "$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm long.sh >/dev/null
 (cd elsewhere && sbatch ../long.sh >/dev/null) || fail "the job of a run is refused"
 patiently is_done || fail "the jobs of a run do not end: $(cat long.messages.txt)"

@@ -185,6 +185,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   if (std::filesystem::exists(dir.equilibria())) in.equilibria = read_equilibria(dir.equilibria());
   in.results = results_of(dir, p);
+  in.result_errors = errors_of_results(dir);
   add_strength(scene, in);
   const Observer observer = make_observer(scene, p);
   in.rope = is_rope(p, observer);
