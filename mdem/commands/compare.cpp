@@ -62,8 +62,7 @@ std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictur
 
 // The chart of a --svg; `of`: the option that chose what is drawn.
 std::string drawn(const std::string& svg, const char* of) {
-  if (svg.empty())
-    throw InputError({"", 0, of}, "has no two values to draw", "choose another column or more of the runs");
+  if (svg.empty()) throw InputError({"", 0, of}, "has no two values to draw", "name another column, or more runs");
   return svg;
 }
 
@@ -104,12 +103,13 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
   }
   kind.yarn_diameter = 1e3 * a.yarn_diameter_um;
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
+  column_of_log(x, {"", 0, "--x"});
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
   RunsFigure figure;
   figure.x = a.torsion ? "rotation_deg" : "ends_strain";
-  figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
+  figure.y = {a.torsion ? "torque_nN_nm" : "stress_GPa"};
   if (!a.svg.empty() && tests.size() > 1) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
   if (!a.svg.empty() && tests.size() == 1) {
     RunsFigure curve = figure;
@@ -142,8 +142,8 @@ void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::
 }
 
 int compare_runs(const CompareArguments& a) {
-  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
-  for (const std::string& column : a.y) column_of_log(column, {"", 0, "--y"});
+  if (!a.x.empty()) curve_column(a.x, {}, {"", 0, "--x"});
+  for (const std::string& column : a.y) curve_column(column, {}, {"", 0, "--y"});
   Wanted wanted;
   if (a.svg.empty() && a.csv.empty()) wanted.page = a.page.empty() ? "compare.html" : a.page;
   for (const auto& [file, option] :
@@ -175,7 +175,10 @@ void add_compare(CLI::App& app, Program& program) {
   c->add_option("--x", a->x,
                 "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg, with "
                 "--torsion rotation_deg]");
-  c->add_option("--y", a->y, "Runs: columns, a chart each [default: the usual ones that vary]")->delimiter(',');
+  c->add_option("--y", a->y,
+                "Runs: columns, a chart each, such as torque_nN_nm, the mean of both ends [default: the usual ones "
+                "that vary]")
+      ->delimiter(',');
   c->add_option("--level", a->levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_option(
        "--mean", a->mean_ps,

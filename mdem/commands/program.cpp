@@ -159,6 +159,7 @@ int ropewalk_main(int argc, char** argv) {
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
       "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 8 done but not as "
       "[[expect]] says, 128 + signal.");
+  keep_help_within_width(app);
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);
