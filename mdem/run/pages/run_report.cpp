@@ -78,7 +78,7 @@ void add_strength(const Scene& scene, ReportInput& in) {
     in.facts.push_back({"strength",
                         fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", r.strength,
                                     r.strength_N_per_tex, r.strength_strain),
-                        "the largest stress in the log, over the cells of the cross-section"});
+                        "the largest stress in the log, over the cells of the cross-section; strain since the pull began"});
   in.facts.push_back({"broken",
                       fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
                                   last["links_formed"], last["bonds_broken"]),
