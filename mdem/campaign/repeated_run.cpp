@@ -79,12 +79,12 @@ int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& 
   if (!again && is_of(dir, inputs)) {
     const PointProgress progress = progress_of(dir);
     if (progress.stage == Stage::ended && progress.status == "finished") return 0;
-    if (progress.stage == Stage::begun) return code_of(go_through(resume_run(dir, {}, listener)));
+    if (progress.stage == Stage::begun) return code_of(go_through(resume_run(dir, {}, listener)), true);
   }
   remove_run(dir, "--again");
   fs::create_directories(base.path + "/errors");
   const TemporaryFolder folder;
-  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, {}, listener)));
+  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, {}, listener)), true);
 }
 
 }  // namespace ropewalk

@@ -196,6 +196,17 @@ std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log) {
   return [=](const LogRow& r) { return 0.5 * (r[upper] + r[lower]); };
 }
 
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log, const InputError::Place& place) {
+  if (name == "torque_nN_nm")
+    return {"torque", "nN nm",
+            "torque about z that twists the rope, mean over both ends where both are held, and over the time between "
+            "two rows",
+            false, torque_of(log)};
+  const std::size_t k = column_of_log(name, place);
+  const Observable& o = observables()[k];
+  return {quantity_of(o), o.unit, o.meaning, o.whole, [k](const LogRow& row) { return row.values()[k]; }};
+}
+
 double rotation_at(const std::vector<LogRow>& log, double time) {
   for (std::size_t k = 0; k < log.size(); ++k) {
     if (log[k]["time_ps"] < time) continue;

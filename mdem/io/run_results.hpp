@@ -19,6 +19,16 @@ std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitR
 // end.
 std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log);
 
+// What curves show: a column of the log, or torque_nN_nm, which is torque_of().
+struct CurveColumn {
+  std::string quantity, unit, meaning;
+  bool whole = false;  // integers
+  std::function<double(const LogRow&)> value;
+};
+// `log`: of the run. Throws InputError where there is no such column.
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log,
+                         const InputError::Place& place = {});
+
 // Degrees: the rotation of the upper end at this time, ps, between two rows; NaN where there are none.
 double rotation_at(const std::vector<LogRow>& log, double time);
 

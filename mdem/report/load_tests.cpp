@@ -167,13 +167,12 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
                             const std::string& x, const std::string& lines, Figures& figures) {
   std::string html =
       heading(kind.heading) + paragraph(kind.words) +
-      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
-      escape_markup(column_axis(x).quantity) + "</th>";
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th>" + head_cell(x);
   if (kind.yarn_diameter > 0)
     html += fmt::format("<th>turns per metre of a yarn of {:.4g} µm</th>", 1e-3 * kind.yarn_diameter);
   std::vector<OutputColumn> columns = limit_columns();
   columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
-  for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
+  for (const OutputColumn& c : columns) html += head_cell(c.name, c.meaning);
   html += "</tr></thead><tbody>\n";
   for (const LoadTestGroup& g : groups) {
     const auto cell = [&](const Mean& m) {

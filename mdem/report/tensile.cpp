@@ -83,7 +83,7 @@ const LoadTestKind& tensile_kind() {
   static const LoadTestKind kind = [] {
     LoadTestKind k{"Strength",
                    "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is "
-                   "counted until the stress has fallen to half of its largest value; The column \"to half\" "
+                   "counted until the stress has fallen to half of its largest value. The column \"to half\" "
                    "counts the runs that went on until then.",
                    "strength",
                    "GPa",
