@@ -22,6 +22,7 @@
 #include "report/runs_page.hpp"
 #include "run/results.hpp"
 #include "run/tell.hpp"
+#include "scene/missing_forces.hpp"
 
 namespace ropewalk {
 namespace {
@@ -221,6 +222,7 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    refuse_missing_forces(scene.missing_forces, dir.path);
     if (manifest.status == "taken from atoms")
       throw InputError({dir.path, 0, ""}, "was not run: its elements were taken from atoms",
                        "run a scene that begins with its final.csv");

@@ -205,7 +205,11 @@ Scene read_run_scene(const RunDirectory& dir) {
   Scene scene = read_scene(dir.scene(), sets);
   if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state(), dir.state_memory());
   // A scene without a name has that of its file, which here is always scene.toml.
-  if (fs::exists(dir.manifest())) scene.name = read_manifest(dir.manifest()).scene;
+  if (fs::exists(dir.manifest())) {
+    const Manifest m = read_manifest(dir.manifest());
+    scene.name = m.scene;
+    scene.missing_forces = m.own_forces;
+  }
   return scene;
 }
 

@@ -19,6 +19,7 @@ Manifest manifest_of(const RunParts& run, const std::string& status, const std::
   m.build_type = build_type;
   m.instructions = instructions_in_use();
   if (const DeviceStepper* device = run.moving.simulation.device()) m.device = device->name();
+  m.own_forces = own_forces_in_words(run.settings.own_forces);
   m.threads = threads_in_use();
   m.seed = scene.start.seed;
   m.scene_hash = scene.hash;

@@ -16,6 +16,7 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
+#include "scene/missing_forces.hpp"
 #include "scene/scene_place.hpp"
 
 namespace ropewalk {
@@ -105,6 +106,7 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
+  refuse_missing_forces(scene.missing_forces, scene.path);
   Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
     if (lacking.key.empty()) lacking = drive->not_for_lammps();

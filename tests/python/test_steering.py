@@ -2,13 +2,17 @@
 from __future__ import annotations
 
 import math
+import os
 import pickle
+import subprocess
 import unittest
 
 import numpy as np
 from support import ROPE, FolderTest
 
 import ropewalk
+from ropewalk.forces import name_of
+from ropewalk.programs import find_program
 
 # One tube between clamps, the upper one of which turns.
 TUBE = {
@@ -53,12 +57,44 @@ class OwnForceTest(FolderTest):
             run = ropewalk.run(scene, "run", steps=40, forces=[force], threads=1, force=True)
             simulation.step(40)
             np.testing.assert_allclose(run.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
-            with self.assertRaisesRegex(ropewalk.InputError, "begun with 1 of one's own, in Python, and would go on with none"):
+            with self.assertRaisesRegex(ropewalk.InputError, r"in Python: \w+( \(no energy\))?; it would go on with: none"):
                 ropewalk.resume("run")
             again = ropewalk.resume("run", steps=60, forces=[force], threads=1)
             simulation.step(20)
             self.assertEqual(again.log["step"][-1], 60)
             np.testing.assert_allclose(again.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
+
+    # The program and the package know that the run had a force, and compute nothing of it without this force.
+    def test_nothing_repeats_a_run_without_its_forces(self):
+        program = find_program()
+        for force in (Trap(ropewalk.Scene(FREE)), pull):
+            name = name_of(force)
+            run = ropewalk.run(FREE, "run", steps=40, forces=[force], force=True)
+            self.assertIn(name, run.manifest["own_forces"])
+            for arguments in (["errors", "run"], ["check", "run", "--accuracy"], ["export", "run", "--lammps", "out"],
+                              ["modes", "run", "--anyway"], ["resume", "run", "--steps", "50"]):
+                said = subprocess.run([program, *arguments], capture_output=True, text=True)
+                self.assertEqual(said.returncode, 2, (arguments, said.stderr))
+                self.assertIn(name, said.stderr, arguments)
+                self.assertIn("ropewalk.resume(", said.stderr, arguments)
+            self.assertFalse(os.path.exists("out"))
+            self.assertFalse(os.path.exists("run/errors"))
+            for again in (run.simulation, lambda: ropewalk.Simulation(run.scene), lambda: ropewalk.run(run.scene, "b")):
+                with self.assertRaisesRegex(ropewalk.InputError, name):
+                    again()
+            self.assertEqual(run.simulation(forces=[force]).step_number, 40)
+
+    def test_other_forces_are_known_by_name_and_energy(self):
+        def push(now):
+            return -pull(now)
+
+        ropewalk.run(FREE, "run", steps=40, forces=[pull])
+        with self.assertRaisesRegex(ropewalk.InputError, r"pull \(no energy\); it would go on with: Trap"):
+            ropewalk.resume("run", steps=50, forces=[Trap(ropewalk.Scene(FREE))])
+        with self.assertRaisesRegex(ropewalk.InputError, r"pull \(no energy\) -> push \(no energy\)"):
+            ropewalk.resume("run", steps=50, forces=[push])
+        run = ropewalk.resume("run", steps=50, forces=[push], accept_changes=True)
+        self.assertEqual(run.manifest["own_forces"], "push (no energy)")
 
     def test_a_force_with_an_energy_closes_the_account(self):
         scene, off = ropewalk.Scene(FREE), []

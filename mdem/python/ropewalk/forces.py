@@ -1,6 +1,7 @@
 """Forces of one's own: functions of Python that act in a simulation."""
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, Optional
 
@@ -23,6 +24,12 @@ def _vectors(values: Optional[ArrayLike], elements: int, what: str) -> Floats:
     return array.reshape(elements, 3)
 
 
+def name_of(force: OwnForce) -> str:
+    """The name of a function, or that of the class of what is called like one (no unit)."""
+    function = getattr(force, "func", force)  # of functools.partial
+    return re.sub(r"[^\w<>.]+", "_", str(getattr(function, "__name__", type(function).__name__)))
+
+
 def checked(force: OwnForce, tube_begin: Sequence[int], element_length_nm: float) -> Callable[..., _Found]:
     """The function as the core calls it: arrays in, checked arrays and the energy out.
 
@@ -41,4 +48,5 @@ def checked(force: OwnForce, tube_begin: Sequence[int], element_length_nm: float
         found_energy = None if energy is None else finite(energy, "the energy of a force of one's own")
         return _vectors(forces, n, "the forces"), _vectors(torques, n, "the torques"), found_energy
 
+    call.__name__ = name_of(force)
     return call
