@@ -13,7 +13,7 @@ class OwnTerm : public ForceTerm {
   explicit OwnTerm(std::shared_ptr<OwnForce> force) : force_(std::move(force)) {}
 
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<OwnTerm>(*this); }
-  std::string name() const override { return "own"; }
+  std::string name() const override { return "own_forces"; }
   void gather(const State& state) override {
     if (auto found = force_->at(state)) now_ = std::move(*found);
   }

@@ -117,8 +117,9 @@ std::vector<TermKind> terms_of_shipped_drives() {
   std::vector<TermKind> kinds;
   for (const DriveKind& drive : shipped_drives())
     if (auto kind = term_kind_of(drive)) kinds.push_back(*std::move(kind));
-  // It follows from the strands of a scene and is in no table.
+  // In no table: the first follows from the strands of a scene, the second is given in Python.
   kinds.push_back({"ends", "van der Waals energy of the ends of tubes in line"});
+  kinds.push_back({"own_forces", "energy of forces of one's own, in Python"});
   return kinds;
 }
 

@@ -106,8 +106,8 @@ struct Scene {
   LimitOptions limits;
   std::vector<StopRule> stops;
   std::vector<Expectation> expected;
-  // Forces of one's own that the run of this scene had, by name (scene/missing_forces.hpp); start() refuses to go on without
-  // them.
+  // Forces of one's own that the run of this scene had, by name (scene/missing_forces.hpp). start() refuses to go on
+  // without them.
   std::string missing_forces;
 
   const ParameterSet& parameters() const { return sets.front(); }

@@ -84,6 +84,21 @@ class OwnForceTest(FolderTest):
                     again()
             self.assertEqual(run.simulation(forces=[force]).step_number, 40)
 
+    # Whoever reads the run finds the force by its name, and its energy among the parts.
+    def test_the_files_of_a_run_name_its_forces(self):
+        run = ropewalk.run(FREE, "run", steps=40, forces=[Trap(ropewalk.Scene(FREE), 0.3, 30), pull])
+        self.assertEqual(run.manifest["own_forces"], "Trap, pull (no energy)")
+        log = run.log
+        self.assertLess(log["own_forces_eV"][-1], -1)
+        total = sum(log[f"{part}_eV"] for part in ("stretch", "shear", "bend", "twist", "vdw", "own_forces", "kinetic"))
+        np.testing.assert_allclose(total - total[0] - log["work_eV"] + log["dissipated_eV"], log["balance_eV"], atol=1e-9)
+        with open("run/report.html", encoding="utf-8") as page:
+            html = page.read()
+        self.assertIn("Trap, pull (no energy)", html)
+        self.assertRegex(html, r"own forces <b>.\d+")
+        said = subprocess.run([find_program(), "observe", "run"], capture_output=True, text=True)
+        self.assertIn("Trap, pull (no energy)", said.stderr)
+
     def test_other_forces_are_known_by_name_and_energy(self):
         def push(now):
             return -pull(now)
