@@ -301,11 +301,12 @@ int errors_command(const ErrorsArguments& a) {
     for (const bool plus : {true, false})
       if (const std::string& name = plus ? source.error.plus : source.error.minus; !name.empty())
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
-  const RunInputs as_it_was = inputs_of(run.dir, run.scene);
+  const RunInputs as_it_was = inputs_of(run.dir, run.scene, run.prepared);
   for (const NumericRun& r : plan.runs)
     repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
+      if (changed.until_ps > 0) changed.until_ps *= r.times;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);
     });
   if (!a.quiet) repeats.say_cost(run.manifest.wall_seconds * run.manifest.threads);

@@ -26,7 +26,6 @@ bool is_later(const std::string& column) { return column == "own_forces_eV"; }
 // `columns`: the observables that the file has, in its order.
 LogRow row_of(const CsvReader& csv, const std::vector<std::size_t>& columns) {
   LogRow row;
-  std::fill(row.values().begin(), row.values().end(), 0);
   if (csv.cells().size() != columns.size())
     csv.fail("", fmt::format("{} columns, {} are needed", csv.cells().size(), columns.size()), damaged_log);
   for (std::size_t k = 0; k < columns.size(); ++k) {
