@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 
 #include "model/error.hpp"
 #include "scene/scene.hpp"
+#include "scene/taken_name.hpp"
 #include "sim/forces/shipped_terms.hpp"
 
 namespace ropewalk {
@@ -138,8 +138,9 @@ bool Drive::holds_elements() const {
 const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 
 bool add_drive_kind(DriveKind kind) {
-  assert(std::none_of(kinds_of_drives().begin(), kinds_of_drives().end(),
-                      [&](const DriveKind& other) { return other.table().name == kind.table().name; }));
+  refuse_taken_name(std::any_of(kinds_of_drives().begin(), kinds_of_drives().end(),
+                                [&](const DriveKind& other) { return other.table().name == kind.table().name; }),
+                    "drive", kind.table().name);
   if (auto term = term_kind_of(kind)) add_term_kind(*std::move(term));
   kinds_of_drives().push_back(std::move(kind));
   return true;
