@@ -62,14 +62,32 @@ void say_source(const Scene& scene, const Prepared& p) {
   fmt::print("\n");
 }
 
+// What tubes do to one another at the start, which forecasts leave out: they come nearer only as the scene moves.
+void say_begun(const Scene& scene, const Prepared& p, const Simulation& simulation) {
+  const Watched watched = watched_by_run(scene, p, make_observer(scene, p));
+  const State& state = simulation.state();
+  Peaks now = peaks(p.topology, state, simulation.list(), watched);
+  for (std::size_t k = 0; k < limit_count; ++k) {
+    const LimitKind& kind = limit_kinds()[k];
+    if (kind.limit == &Limits::pressure) now[k] = pressure_peak(p.topology, state, watched);
+    if ((kind.limit != &Limits::pressure && kind.limit != &Limits::overlap) || !now[k].passed()) continue;
+    fmt::print("note: The scene begins with {} at {:.3g}{}{}, in {}, beyond its limit of {:.3g}: {}; {}.\n", kind.key,
+               now[k].value / kind.unit_size, *kind.unit ? " " : "", kind.unit,
+               place_in_words(p.topology, watched.held, now[k].element), now[k].limit / kind.unit_size,
+               kind.consequence, kind.remedy);
+  }
+}
+
 void say_limits(const Scene& scene, const Prepared& p) {
   const std::vector<Limits> all = watched_of(scene, p.topology, p.loads, p.interaction.law.get()).limits;
   for (std::size_t type = 0; type < all.size(); ++type) {
     std::string text;
-    for (const LimitKind& kind : limit_kinds())
-      if (all[type].*kind.limit > 0)
-        text +=
-            fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+    for (const LimitKind& kind : limit_kinds()) {
+      if (!(all[type].*kind.limit > 0)) continue;
+      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", kind.key, all[type].*kind.limit / kind.unit_size);
+      const double pressed = kind.limit == &Limits::strain ? all[type].compression : 0;
+      if (pressed > 0 && pressed != all[type].strain) text += fmt::format(" and {:.4g}", -pressed);
+    }
     fmt::print("watched{}: {}\n", all.size() > 1 ? " in " + scene.sets[type].name : "",
                text.empty() ? "nothing" : text);
   }
@@ -198,6 +216,8 @@ int check_command(const CheckArguments& a) {
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : limits_ahead(scene, p)) fmt::print("note: {}\n", warning);
+  say_begun(scene, p, simulation);
+  if (const std::string what = not_foreseen(scene, p); !what.empty()) fmt::print("note: {}\n", what);
   if (const auto helix = helix_ahead(scene, p)) fmt::print("note: {}\n", *helix);
   if (const auto turn = quasi_static(scene, p)) fmt::print("note: {}\n", words_of(*turn));
   say_limits(scene, p);

@@ -88,18 +88,20 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
-  if (!a.svg.empty() && tests.size() == 1)
-    throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
-                     "has one point, and a figure needs two or more",
-                     a.torsion ? "draw the curve of the run: --x rotation_deg --y torque_upper_nN_nm"
-                               : "draw the curve of the run: --x ends_strain --y stress_GPa");
-  if (!a.svg.empty()) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
-  if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
-  if (wanted.page.empty()) return;
-  const std::vector<RunCurve> curves = curves_of(groups, true, 0);
   RunsFigure figure;
   figure.x = a.torsion ? "rotation_deg" : "ends_strain";
   figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
+  if (!a.svg.empty() && tests.size() > 1) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
+  if (!a.svg.empty() && tests.size() == 1) {
+    RunsFigure curve = figure;
+    if (!a.x.empty()) curve.x = a.x;
+    for (const std::string& level : a.levels) curve.levels.push_back(level_of(level));
+    write(a.svg, drawn(runs_svg(curves_of(groups, false, 0), curve), "--x"));
+    fmt::print("one point, so {} shows its {} against {}\n", a.svg, curve.y.front(), curve.x);
+  }
+  if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
+  if (wanted.page.empty()) return;
+  const std::vector<RunCurve> curves = curves_of(groups, true, 0);
   for (const char* column : {"links_broken", "bonds_broken"})
     if (std::any_of(curves.begin(), curves.end(), [&](const RunCurve& c) { return c.log.back()[column] > 0; }))
       figure.y.push_back(column);

@@ -20,6 +20,7 @@
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/runs_page.hpp"
+#include "run/directory_lock.hpp"
 #include "run/results.hpp"
 #include "run/tell.hpp"
 #include "scene/missing_forces.hpp"
@@ -288,6 +289,7 @@ NumericErrors write_numeric_errors(const FinishedRun& run, NumericRuns what, Run
 
 int errors_command(const ErrorsArguments& a) {
   const FinishedRun run(a.dir);
+  const DirectoryLock lock(run.dir.path);  // two at a time would each refuse the runs of the other
   const int tubes = run.prepared.topology.tubes();
   const ErrorInputs inputs = a.numerics ? inputs_with_errors(run.scene, tubes) : error_inputs(run.scene, tubes);
   NumericPlan plan;

@@ -147,6 +147,12 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.heat = s.heat();
   LammpsStart start = start_of(scene, s);
   const LammpsScript script = script_of(scene, p, s);
+  const double apart = static_cast<double>(script.every) * script.time_step;
+  if (const double wanted = scene.run.log_every; wanted > 0 && wanted < apart * (1 - 1e-9) && !script.relax)
+    listener.tell(fmt::format("note: a row of the log needs a state, and LAMMPS writes one every {:.4g} ps: "
+                              "log_every_ps = {:.4g} has no say; for as many rows set run.frames_every_ps = {:.4g} "
+                              "and export again",
+                              apart, wanted, wanted));
   for (const auto& [path, content] :
        {std::pair{dir.tubes(), tubes_csv(p.topology)},
         std::pair{dir.first_state(),

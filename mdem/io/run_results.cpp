@@ -86,6 +86,9 @@ const ResultColumn all_results[] = {
      [](const RunResults& r) { return r.torque_max_deg; }},
     {{"torque_within_nN_nm", "nN nm", "the largest before a limit of the model was passed"},
      [](const RunResults& r) { return r.torque_within; }},
+    {{"first_limit_deg", "deg",
+      "rotation of the upper end when a limit of the model was passed first, of a rope that is twisted"},
+     [](const RunResults& r) { return r.first_limit_deg; }},
     {{"bending_max_nN_nm", "nN nm", "largest moment across z on an end, of a rope that is bent"},
      [](const RunResults& r) { return r.bending_max; }},
     {{"first_break_ps", "ps", "when the first tube broke"}, [](const RunResults& r) { return r.first_break_ps; }},
@@ -113,6 +116,7 @@ class ResultWords {
                                    at(r_.torque_max_deg, "torque_max_at_deg", r_.torque_max_ps, ""));
     if (r_.first_limit.empty() || r_.torque_max_ps < r_.first_limit_ps) return text + ".";
     text += fmt::format(", beyond {} from {:.4g} ps on", r_.first_limit, r_.first_limit_ps);
+    if (std::fabs(r_.first_limit_deg) >= turned_from) text += fmt::format(" ({:.4g}°)", r_.first_limit_deg);
     if (std::isfinite(r_.torque_within))
       text += fmt::format("; before, it reached {} nN nm", number("torque_within_nN_nm", 4));
     return text + ".";
@@ -207,6 +211,9 @@ RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRe
   const std::size_t within = rows_within(log, limits);
   add_bending(log, r);
   add_torque(log, within, r);
+  if (const LimitRecord* first = first_limit(limits);
+      first && std::isfinite(r.torque_max) && (first->passed_at_ps > 0 || first->passed_at_step == 0))
+    r.first_limit_deg = rotation_at(log, first->passed_at_ps);
   add_strength(log, r);
   if (!breaks.empty()) {
     r.first_break = *std::min_element(breaks.begin(), breaks.end(),

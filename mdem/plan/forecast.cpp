@@ -12,6 +12,7 @@
 #include "plan/sliding_rope.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/end_drives.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
@@ -93,8 +94,9 @@ struct Ahead {
 };
 
 // `end`: ps, of the run, which loads may outlast.
-Ahead ahead_of(const DemandsAhead& demands, double end, const TubeType& type, double Limits::*kind, double limit) {
-  const auto value = [&](double time) { return expected(demands.at(time), type, kind); };
+template <class Value>
+Ahead ahead_of(const DemandsAhead& demands, double end, const Value& of, double limit) {
+  const auto value = [&](double time) { return of(demands.at(time)); };
   Ahead out{value(0), 0, 0};
   double before = 0;
   for (const double asked : demands.times()) {
@@ -133,7 +135,60 @@ std::vector<std::size_t> types_with_tubes(const Topology& topology) {
   return {all.begin(), all.end()};
 }
 
+// As far as tubes bear it.
+double expected_of(const Demands& f, const TubeType& type, const ForceTerm::Strength& strength, double Limits::*limit) {
+  const double value = expected(f, type, limit);
+  return limit == &Limits::strain ? std::min(value, strength.strongest) : value;
+}
+
+ForceTerm::Strength strength_of(const Prepared& p, std::size_t type) {
+  ForceTerm::Strength out;
+  for (const auto& term : p.interaction.terms) {
+    const ForceTerm::Strength here = term->strength(static_cast<int>(type));
+    out.weakest = std::min(out.weakest, here.weakest);
+    out.strongest = std::min(out.strongest, here.strongest);
+    out.moment = std::min(out.moment, here.moment);
+  }
+  return out;
+}
+
+// When the tubes of a type break, and by what.
+struct Breaks {
+  double from = std::numeric_limits<double>::infinity();  // ps
+  std::string by;
+};
+
+Breaks breaks_ahead(const DemandsAhead& demands, double end, const TubeType& type,
+                    const ForceTerm::Strength& strength) {
+  Breaks out;
+  const TubeLaw law(type);
+  const auto look = [&](const auto& of, double limit, const std::string& by) {
+    if (!std::isfinite(limit)) return;
+    const Ahead ahead = ahead_of(demands, end, of, limit);
+    const double from = ahead.start > limit ? 0 : ahead.passes;
+    if (ahead.largest > limit && from < out.from) out = {from, by};
+  };
+  look([](const Demands& f) { return f.strain; }, strength.weakest,
+       fmt::format("strained by {:.3g}", strength.weakest));
+  look([&](const Demands& f) { return law.moment(std::min(f.curvature, 0.5 * units::pi / type.element_length)); },
+       strength.moment, fmt::format("bent with {:.3g} nN nm", strength.moment / units::nN_nm));
+  if (std::isfinite(strength.weakest) || std::isfinite(strength.moment))
+    look([&](const Demands& f) { return type.element_length * f.twist; }, (1 - 1e-6) * 0.5 * units::pi,
+         "twisted by 90 deg");
+  return out;
+}
+
 }  // namespace
+
+std::string not_foreseen(const Scene& scene, const Prepared& p) {
+  std::set<std::string> what;
+  for (const auto& term : p.interaction.terms)
+    if (const std::string words = term->not_foreseen(); !words.empty()) what.insert(words);
+  for (const auto& load : p.loads)
+    if (!load->effect()) what.insert("what loads of your own do");
+  if (scene.start.temperature > 0 || scene.bath()) what.insert("the peaks of heat");
+  return what.empty() ? "" : fmt::format("Limits are foreseen without {}.", fmt::join(what, ", "));
+}
 
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
@@ -141,7 +196,24 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   const std::vector<std::size_t> types = types_with_tubes(p.topology);
   const double end = scene.run.mode == RunOptions::Mode::relax ? std::numeric_limits<double>::infinity() : p.duration;
   std::vector<DemandsAhead> demands;
-  for (const std::size_t type : types) demands.emplace_back(scene, p, type);
+  std::vector<ForceTerm::Strength> strengths;
+  for (const std::size_t type : types) {
+    demands.emplace_back(scene, p, type);
+    strengths.push_back(strength_of(p, type));
+  }
+  Breaks first;
+  std::string of;
+  for (std::size_t k = 0; k < types.size(); ++k)
+    if (const Breaks breaks = breaks_ahead(demands[k], end, p.topology.types[types[k]], strengths[k]);
+        breaks.from < first.from) {
+      first = breaks;
+      of = types.size() > 1 ? " of " + scene.sets[types[k]].name : "";
+    }
+  if (std::isfinite(first.from))
+    out.push_back(fmt::format("The load may break tubes{}, {}: a bond breaks once it is {}.", of,
+                              first.from > at_once ? fmt::format("from about {:.3g} ps on", first.from)
+                                                   : "from the start on",
+                              first.by));
   for (const auto& [asked, member] : all_asked()) {
     const LimitKind& kind = *asked;
     const auto limit_of = [&, own = member](const Limits& of) {
@@ -153,7 +225,10 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
     for (std::size_t k = 0; k < types.size(); ++k) {
       const double here = limit_of(limits[types[k]]);
       if (here <= 0 || kind.limit == &Limits::shock) continue;
-      const Ahead of_type = ahead_of(demands[k], end, p.topology.types[types[k]], member, here);
+      const auto value = [&, own = member](const Demands& f) {
+        return expected_of(f, p.topology.types[types[k]], strengths[k], own);
+      };
+      const Ahead of_type = ahead_of(demands[k], end, value, here);
       if (k > 0 && !(of_type.largest / here > ahead.largest / limit_of(limits[type]))) continue;
       ahead = of_type;
       type = types[k];

@@ -36,7 +36,7 @@ RopeSection::RopeSection(const Prepared& p) {
 
 double RopeSection::winding_under(double moment, const BondStiffness& bond, bool relaxes_spins, Tubes tubes,
                                   double from) const {
-  const double twist = relaxes_spins ? 0 : bond.twist, held = tubes == Tubes::cling_at_kept_length ? 0 : mean_ * mean_,
+  const double held = tubes == Tubes::cling_at_kept_length ? 0 : mean_ * mean_, twist = relaxes_spins ? 0 : bond.twist,
                stretch = tubes == Tubes::slide ? 0 : 0.5 * bond.stretch * std::max(0.0, mean_square_ - held),
                bend = 2 * bond.bend * mean_;
   const auto force = [&](double w) {

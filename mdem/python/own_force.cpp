@@ -14,6 +14,7 @@ class OwnTerm : public ForceTerm {
 
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<OwnTerm>(*this); }
   std::string name() const override { return "own_forces"; }
+  std::string not_foreseen() const override { return "what a force of your own does"; }
   void gather(const State& state) override {
     if (auto found = force_->at(state)) now_ = std::move(*found);
   }

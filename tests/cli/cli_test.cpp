@@ -1062,15 +1062,20 @@ TEST_F(Cli, NewtonsMethodFindsTheStateOfRestUnderTwist) {
   EXPECT_EQ(modes.code, 0) << modes.err;
 }
 
-// Stopped after every step and resumed, a curve of states of rest is the same bytes.
+// Stopped after every step and resumed, a curve of states of rest is the same bytes. The rope winds itself before it
+// is loaded, to the side of the moment to come: with the other hand all is the mirror image.
 TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
-  spit(dir / "s.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
-       "[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\n[statics]\nsteps = 3\n"
-       "[run]\nmode = \"relax\"\nsolver = \"newton\"\n");
+  const auto scene = [](const std::string& hand) {
+    return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+           "[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\nhand = \"" +
+           hand + "\"\n[statics]\nsteps = 3\n[run]\nmode = \"relax\"\nsolver = \"newton\"\n";
+  };
+  spit(dir / "s.toml", scene("right"));
+  spit(dir / "left.toml", scene("left"));
   const Outcome o = run("run s.toml --out whole");
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_THAT(o.out, HasSubstr("4 of 4 states of rest"));
+  EXPECT_THAT(o.out, HasSubstr("at 0 nN nm it left a saddle of the energy: it winds or bends there by itself"));
   const ropewalk::Equilibria rests = ropewalk::read_equilibria((dir / "whole/equilibria.csv").string());
   ASSERT_EQ(rests.size(), 4u);
   const std::vector<ropewalk::LogRow> log = ropewalk::read_log((dir / "whole/log.csv").string());
@@ -1081,6 +1086,12 @@ TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
     EXPECT_LT(rests[k].force, 1e-4);
   }
   EXPECT_GT(log[4]["geometric_twist_deg"], log[3]["geometric_twist_deg"]);
+  EXPECT_GT(log[1]["geometric_twist_deg"], 1);
+  ASSERT_EQ(run("run left.toml --out left").code, 0);
+  const std::vector<ropewalk::LogRow> mirrored = ropewalk::read_log((dir / "left/log.csv").string());
+  ASSERT_EQ(mirrored.size(), log.size());
+  for (std::size_t k = 0; k < log.size(); ++k)
+    EXPECT_NEAR(mirrored[k]["geometric_twist_deg"], -log[k]["geometric_twist_deg"], 0.01) << k;
   EXPECT_THAT(slurp(dir / "whole/report.html"), HasSubstr("States of rest"));
   const auto steps = [&](std::size_t k) { return std::to_string(rests[k].step + 1); };
   EXPECT_EQ(run("run s.toml --out parts --steps " + steps(0)).code, 4);
@@ -1364,8 +1375,11 @@ tolerance = 0.2
   EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
-  const Outcome torsion = run("compare r --torsion --csv torsion.csv");
+  const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
+  EXPECT_THAT(torsion.out,
+              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+  EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
   const std::string table = slurp(dir / "torsion.csv");
   ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
   EXPECT_NEAR(std::stod(cells[2]), largest.at("error").get<double>(), 0.01 * largest.at("error").get<double>());

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# The jobs of `ropewalk run --slurm`, `sweep --slurm` and `threshold --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
-# not on the PATH. Argument: ropewalk.
+# The jobs of `ropewalk run --slurm`, `sweep --slurm`, `threshold --slurm` and `export --lammps` on a cluster of one
+# node, which this test starts as whoever runs it. ropewalk is not on the PATH. Arguments: ropewalk, lmp-ropewalk.
 set -euo pipefail
 command -v slurmctld slurmd sbatch >/dev/null || { echo "slurm: skipped, apt-get install slurm-wlm" >&2; exit 77; }
 ropewalk=$(realpath "$1")
+lmp=${2:+$(realpath "$2")}
 work=$(mktemp -d)
 started=()
 finish() {
@@ -82,6 +83,18 @@ grep -q 'Submitted batch job' long.messages.txt || fail "one job was enough: $(c
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
 "$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm again.sh 2> said && fail "a job would resume another run"
 grep -q 'is there already' said || fail "an earlier run is not named: $(cat said)"
+
+# A job on two ranks of LAMMPS, which asks SLURM when it ends.
+if [ -n "$lmp" ]; then
+  mkdir bin && ln -s "$lmp" bin/lmp-ropewalk
+  "$ropewalk" export scenes/long.toml --lammps ranks >/dev/null
+  sed -i 's/--ntasks=.*/--ntasks=2/; s/--time=.*/--time=00:02:00/' ranks/job.sh
+  (cd ranks && PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 sbatch job.sh >/dev/null) || fail "the job of ranks is refused"
+  patiently is_done || fail "the job of ranks does not end: $(cat ranks/messages.txt)"
+  ! grep -q 'does not tell' ranks/messages.txt || fail "a job of ranks does not know its end"
+  grep -q 'by 2 MPI' ranks/messages.txt || fail "not two ranks: $(cat ranks/messages.txt)"
+  "$ropewalk" import ranks >/dev/null || fail "what ranks wrote is not taken: $(cat ranks/messages.txt)"
+fi
 
 # A search for thresholds, one point a task; the same command then makes the page of all.
 { printf 'format = "ropewalk-sweep-1"\nscene = "rope.toml"\n[threshold]\nkey = "twist.moment_nN_nm"\nfrom = 1\nto = 9\n'

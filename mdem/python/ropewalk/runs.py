@@ -25,7 +25,7 @@ class Limit(TypedDict):
         key: as in the [limits] of a scene
         unit: of `limit` and `largest`; "" for a pure number
         limit: in `unit`; 0: not watched
-        largest: the largest value, in `unit`
+        largest: the value farthest beyond its limit, in `unit`, below 0 where a bond is pressed, as the limit is
         largest_at_ps: its time, ps
         tube, element: where, from 0; -1: nowhere (no unit)
         passed: whether the limit was passed

@@ -84,6 +84,21 @@ class TubeFailure : public ForceTerm {
   std::string name() const override { return "failure"; }
   const std::vector<char>* broken_bonds() const override { return all_.empty() ? nullptr : &broken_; }
 
+  Strength strength(int type) const override {
+    Strength out;
+    out.moment = law_.moment;
+    bool first = true;
+    for (int t = 0; t < here_.tubes(); ++t)
+      for (int i = here_.tube_begin[t]; here_.tube_type[t] == type && i < here_.tube_begin[t + 1]; ++i) {
+        const auto e = static_cast<std::size_t>(i);
+        if (limit_[e] == no_bond || broken_[e]) continue;
+        out.weakest = first ? limit_[e] : std::min(out.weakest, limit_[e]);
+        out.strongest = first ? limit_[e] : std::max(out.strongest, limit_[e]);
+        first = false;
+      }
+    return out;
+  }
+
   // Bonds that had broken before the start are where they are at the start.
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {

@@ -214,14 +214,32 @@ std::optional<VectorXd> NewtonStatics::falling_motion(const At& at) {
   return std::nullopt;
 }
 
-// To the side where the energy falls farther.
-bool NewtonStatics::push_along(const VectorXd& motion) {
+// Work along d of what NewtonOptions::loads_to_come adds to the loads; 0 where none are known.
+double NewtonStatics::work_to_come(const At& at, const VectorXd& d) const {
+  const double passes = options_.loads_to_come - s_.time();
+  if (!(passes > 0)) return 0;
+  State then = s_.state();
+  then.time += passes;
+  VectorXd of_led;
+  at.k->multiply(led(passes), of_led);
+  VectorXd added = load_forces(s_.loads(), then) - load_forces(s_.loads(), s_.state()) - of_led;
+  at.allowed.project_force(added);
+  return added.dot(d);
+}
+
+// To the side where the energy falls farther. A state that is its own mirror image has none.
+bool NewtonStatics::push_along(const At& at, const VectorXd& motion) {
+  constexpr double alike = 0.01;  // part of the fall
   const VectorXd d = motion * (0.1 * s_.topology().largest_radius() / farthest(motion));
+  const double to_come = work_to_come(at, d);
   const Simulation before = s_;
   std::optional<Simulation> best;
   for (const double sign : {1.0, -1.0}) {
     s_ = before;
-    if (move(sign * d) && (!best || energy_of(s_) < energy_of(*best))) best = s_;
+    if (!move(sign * d)) continue;
+    const double further = best ? energy_of(*best) - energy_of(s_) : 0;
+    const bool same = best && std::fabs(further) < alike * std::fabs(at.energy - energy_of(s_));
+    if (!best || (same && to_come != 0 ? to_come < 0 : further > 0)) best = s_;
   }
   s_ = best ? *best : before;
   return best.has_value();
@@ -365,7 +383,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         if (!motion) return end_by(Statics::End::at_rest);
         const bool came_back = !is_slice() && pace->saddles > 0 && !(at.energy < pace->saddle_energy - enough);
         if (came_back) --out_.relaxed.saddles;
-        if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(*motion)) {
+        if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(at, *motion)) {
           out_.falls = true;
           return end_by(Statics::End::at_rest);
         }

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -37,6 +38,9 @@ struct NewtonOptions {
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count
+  // ps: a saddle from which the energy falls alike to both sides is left to the one to which the loads of this time
+  // would push; NaN: none are known.
+  double loads_to_come = std::numeric_limits<double>::quiet_NaN();
 };
 
 // A wall that has collapsed bears no more, however long it is turned.
@@ -92,7 +96,8 @@ class NewtonStatics {
   Eigen::VectorXd on_arcs(const Eigen::VectorXd& d) const;
   double farthest(const Eigen::VectorXd& d) const;
   std::optional<Eigen::VectorXd> falling_motion(const At& at);
-  bool push_along(const Eigen::VectorXd& motion);
+  bool push_along(const At& at, const Eigen::VectorXd& motion);
+  double work_to_come(const At& at, const Eigen::VectorXd& d) const;
 
   Simulation& s_;
   NewtonOptions options_;

@@ -56,10 +56,14 @@ TEST(RunResults, BeyondALimitAreSaidToBe) {
   const RunResults r = run_results(twisted(1), limits, {{4.2, 2, 11}});
   EXPECT_EQ(r.first_limit, "wall_twist");
   EXPECT_EQ(r.torque_within, 200);
+  EXPECT_NEAR(r.first_limit_deg, 26, 1e-12);
+  EXPECT_TRUE(std::isnan(run_results(twisted(1), {passed("strain", 0, 100)}, {}).first_limit_deg))
+      << "a relaxation counts steps";
+  EXPECT_TRUE(std::isnan(run_results(twisted(1), {}, {}).first_limit_deg));
   EXPECT_NEAR(r.stored_at_limit, 0.2, 1e-12) << "of the last row before";
   EXPECT_THAT(
       result_sentences(r),
-      ElementsAre("Torque passed its maximum, 400 nN nm, at 40°, beyond wall_twist from 2.6 ps on; before, it "
+      ElementsAre("Torque passed its maximum, 400 nN nm, at 40°, beyond wall_twist from 2.6 ps on (26°); before, it "
                   "reached 200 nN nm.",
                   "One tube broke at 42°: tube 2, element 11, beyond wall_twist.",
                   "When wall_twist was passed, the rope stored 0.2 MJ/kg."));

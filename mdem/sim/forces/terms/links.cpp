@@ -225,6 +225,7 @@ class LinkTerm : public ForceTerm {
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<LinkTerm>(*this); }
   std::string name() const override { return "links"; }
+  std::string not_foreseen() const override { return "what links pull"; }
 
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {
