@@ -651,7 +651,7 @@ void add_help(CLI::App& app, Verbs& v) {
     }
     std::string text;  // one word may be a table, a key and a limit
     for (const std::string& part :
-         {table_help(v.help_topic), scene_key_help(v.help_topic), limit_help(v.help_topic)})
+         {table_help(v.help_topic), load_help(v.help_topic), scene_key_help(v.help_topic), limit_help(v.help_topic)})
       text += (text.empty() || part.empty() ? "" : "\n") + part;
     if (!text.empty()) {
       std::fputs(text.c_str(), stdout);

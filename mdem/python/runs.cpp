@@ -131,7 +131,10 @@ void go(const Asked& asked, Begin begin) {
     if (result.end == RunEnd::failed)
       listener.tell(fmt::format("state written to {}", result.directory.failed_state()));
     if (result.end == RunEnd::broken_off)
-      listener.tell(fmt::format("ended at step {}; resume {} goes on", result.steps, result.directory.path));
+      listener.tell(asked.forces.empty()
+                        ? fmt::format("ended at step {}; resume {} goes on", result.steps, result.directory.path)
+                        : fmt::format("ended at step {}; ropewalk.resume(\"{}\", forces=...) goes on", result.steps,
+                                      result.directory.path));
     if (result.end == RunEnd::not_relaxed || result.end == RunEnd::at_limit || result.end == RunEnd::wall_time)
       listener.tell(result.remedy.empty() ? result.reason : result.reason + "; " + result.remedy);
   }

@@ -106,6 +106,7 @@ std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, cons
 
 std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& asked, RunListener& listener) {
   refuse_strange_files(dir);
+  refuse_other_program(dir);
   refuse_without_checkpoint(dir);
   refuse_refined(dir);
   check_finer_directory(dir, asked, true);

@@ -10,7 +10,7 @@
 namespace ropewalk {
 
 struct OwnForceOfRun {
-  std::string name;         // of the function: no comma, no space
+  std::string name;         // the name of its function, without commas and spaces
   bool has_energy = false;  // with one it is a force term, without one a load
   std::shared_ptr<const Drive> drive;
 };

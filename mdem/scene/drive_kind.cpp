@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "model/error.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene.hpp"
-#include "scene/taken_name.hpp"
 #include "sim/forces/shipped_terms.hpp"
 
 namespace ropewalk {
@@ -138,7 +138,7 @@ bool Drive::holds_elements() const {
 const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 
 bool add_drive_kind(DriveKind kind) {
-  refuse_taken_name(std::any_of(kinds_of_drives().begin(), kinds_of_drives().end(),
+  register_own_part(std::any_of(kinds_of_drives().begin(), kinds_of_drives().end(),
                                 [&](const DriveKind& other) { return other.table().name == kind.table().name; }),
                     "drive", kind.table().name);
   if (auto term = term_kind_of(kind)) add_term_kind(*std::move(term));

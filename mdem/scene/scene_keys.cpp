@@ -8,8 +8,8 @@
 
 #include "scene/drive_kind.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/tables/tables.hpp"
-#include "scene/taken_name.hpp"
 
 namespace ropewalk {
 

@@ -1,6 +1,7 @@
 """Simulations that Python steers: forces of one's own, hooks, loads that change, copies."""
 from __future__ import annotations
 
+import json
 import math
 import os
 import pickle
@@ -95,7 +96,7 @@ class OwnForceTest(FolderTest):
         with open("run/report.html", encoding="utf-8") as page:
             html = page.read()
         self.assertIn("Trap, pull (no energy)", html)
-        self.assertRegex(html, r"own forces <b>.\d+")
+        self.assertRegex(html, r"own forces (<b>)?.\d")
         said = subprocess.run([find_program(), "observe", "run"], capture_output=True, text=True)
         self.assertIn("Trap, pull (no energy)", said.stderr)
 
@@ -203,7 +204,8 @@ class OwnForceTest(FolderTest):
 
     def test_what_is_wrong_is_said(self):
         for wrong, words in ((lambda now: np.zeros((3, 3)), r"\(70, 3\) is needed"),
-                             (lambda now: np.full((70, 3), np.nan), "not finite"),
+                             (lambda now: np.where(now.flat.position > now.step, 0, np.nan) if now.step else None,
+                              r"<lambda>, a force of one's own, at 0\.0\d+ ps, is not finite: \[.*\] on element \d+"),
                              (lambda now: np.zeros((70, 3), complex), "complex128: real numbers are needed"),
                              (lambda now: np.ma.masked_array(np.zeros((70, 3)), True), "masked array"),
                              (lambda now: np.full((70, 3), "1"), "real numbers are needed"),
@@ -212,6 +214,29 @@ class OwnForceTest(FolderTest):
                              (lambda now: (None, None, None if now.step else 1.0), "an energy at some times")):
             with self.assertRaisesRegex((ValueError, TypeError), words):
                 ropewalk.Simulation(FREE, forces=[wrong]).step()
+
+    def test_a_missing_return_is_told_once(self):
+        def forgets(now):
+            pull(now)
+
+        with self.assertLogs("ropewalk") as logged:
+            ropewalk.Simulation(FREE, forces=[forgets]).step(3)
+        self.assertEqual(len(logged.output), 1)
+        self.assertIn("forgets gives None at 0 ps", logged.output[0])
+
+    def test_the_manifest_says_in_one_line_why_a_force_ended_the_run(self):
+        def fails(now):
+            if now.step == 3:
+                raise RuntimeError("no wind")
+            return pull(now)
+
+        with self.assertLogs("ropewalk") as logged, self.assertRaisesRegex(RuntimeError, "no wind"):
+            ropewalk.run(FREE, "run", forces=[fails])
+        self.assertIn("ropewalk.resume(\"run\", forces=...) goes on", logged.output[-1])
+        with open("run/manifest.json", encoding="utf-8") as file:
+            reason = json.load(file)["reason"]
+        self.assertIn("RuntimeError: no wind", reason)
+        self.assertNotRegex(reason, r"\n|\\n|At:")
 
 
 class ChangeTest(FolderTest):

@@ -65,7 +65,10 @@ def run(
             program refuses such a run where it would compute forces
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
-    core = as_scene(scene)._to_run()
+    of = as_scene(scene)
+    if not forces:  # those of a run whose scene this is
+        of._core.refuse_missing_forces()
+    core = of._to_run()
     _core.run(core, os.fspath(out), force,
               _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, device, progress, forces, core))
     return Run(out)

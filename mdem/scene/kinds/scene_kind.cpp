@@ -6,9 +6,9 @@
 
 #include "scene/bounds.hpp"
 #include "scene/memory_size.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene.hpp"
 #include "scene/spacing.hpp"
-#include "scene/taken_name.hpp"
 
 namespace ropewalk {
 
@@ -52,7 +52,7 @@ std::string headers() {
 const std::vector<SceneKind>& scene_kinds() { return kinds_of_scenes(); }
 
 bool add_scene_kind(SceneKind kind) {
-  refuse_taken_name(std::any_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
+  register_own_part(std::any_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
                                 [&](const SceneKind& other) { return other.table.name == kind.table.name; }),
                     "scene kind", kind.table.name);
   kinds_of_scenes().push_back(std::move(kind));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/taken_name.hpp"
+#include "scene/own_parts.hpp"
 
 namespace ropewalk {
 
@@ -26,7 +26,7 @@ std::vector<ContactLawKind>& laws_of_contact() {
 const std::vector<ContactLawKind>& contact_law_kinds() { return laws_of_contact(); }
 
 bool add_contact_law(ContactLawKind kind) {
-  refuse_taken_name(contact_law_kind(kind.name) || kind.name == "none", "contact law", kind.name);
+  register_own_part(contact_law_kind(kind.name) || kind.name == "none", "contact law", kind.name);
   laws_of_contact().push_back(std::move(kind));
   return true;
 }

@@ -1,5 +1,5 @@
 // Parts of one's own whose names are taken.
-#include "scene/taken_name.hpp"
+#include "scene/own_parts.hpp"
 
 #include <gtest/gtest.h>
 
