@@ -217,7 +217,7 @@ void add_compare(CLI::App& app, Verbs& v) {
   c->add_option("--x", v.compare.x,
                 "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg, with "
                 "--torsion rotation_deg]");
-  c->add_option("--y", v.compare.y, "Runs: columns, a chart each [default: the usual ones that vary]")
+  c->add_option("--y", v.compare.y, "Runs: columns, a chart each, such as torque_nN_nm, the mean of both ends [default: the usual ones that vary]")
       ->delimiter(',');
   c->add_option("--level", v.compare.levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_option(
@@ -303,7 +303,7 @@ void add_picture(CLI::App& app, Verbs& v) {
   c->add_option("--from", v.picture.from,
                 "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str();
-  c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
+  c->add_option("--curves", v.picture.curves, "Charts below: columns of log.csv, or torque_nN_nm, the mean of both ends; twist_eV+bend_eV,Q makes two")
       ->delimiter(',');
   c->add_option("--x", v.picture.x,
                 "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");
@@ -727,6 +727,7 @@ int main(int argc, char** argv) {
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
       "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 8 done but not as "
       "[[expect]] says, 128 + signal.");
+  keep_help_within_width(app);
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);

@@ -103,7 +103,7 @@ int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& 
     if (progress.stage == Stage::begun) {
       ResumeSettings settings;
       settings.until_ps = inputs.until_ps;
-      return code_of(go_through(resume_run(dir, settings, listener)));
+      return code_of(go_through(resume_run(dir, settings, listener)), true);
     }
   }
   remove_run(dir, "--again");
@@ -111,7 +111,7 @@ int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& 
   const TemporaryFolder folder;
   RunSettings settings;
   settings.until_ps = inputs.until_ps;
-  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, settings, listener)));
+  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, settings, listener)), true);
 }
 
 }  // namespace ropewalk

@@ -244,16 +244,11 @@ int check_command(const CheckArguments& a) {
         scene.run.goal.force, scene.run.goal.energy, scene.run.max_steps);
     return 0;
   }
-  // The least of some short samples: on a busy machine a mean over 20 steps was 50 times too long.
-  constexpr long sample = 5, samples = 5;
+  constexpr long sample = 20;
   const double each = with_shorter_steps(simulation, [](Simulation& s) {
-    double least = std::numeric_limits<double>::infinity();
-    for (long k = 0; k < samples; ++k) {
-      const double began = steady_seconds();
-      s.steps(sample);
-      least = std::min(least, seconds_since(began) / sample);
-    }
-    return least;
+    const double began = steady_seconds();
+    s.steps(sample);
+    return seconds_since(began) / sample;
   });
   const double steps = p.duration / p.time_step;
   fmt::print("{:.4g} ps = {:.0f} steps, about {:.0f} s on all cores\n", p.duration, steps, steps * each);

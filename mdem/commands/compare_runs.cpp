@@ -44,7 +44,7 @@ std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictur
 // The chart of a --svg; `of`: the option that chose what is drawn.
 std::string drawn(const std::string& svg, const char* of) {
   if (svg.empty())
-    throw InputError({"", 0, of}, "has no two values to draw", "choose another column or more of the runs");
+    throw InputError({"", 0, of}, "has no two values to draw", "name another column, or more runs");
   return svg;
 }
 
@@ -85,12 +85,13 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
   }
   kind.yarn_diameter = 1e3 * a.yarn_diameter_um;
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
+  column_of_log(x, {"", 0, "--x"});
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
   RunsFigure figure;
   figure.x = a.torsion ? "rotation_deg" : "ends_strain";
-  figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
+  figure.y = {a.torsion ? "torque_nN_nm" : "stress_GPa"};
   if (!a.svg.empty() && tests.size() > 1) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
   if (!a.svg.empty() && tests.size() == 1) {
     RunsFigure curve = figure;
@@ -125,8 +126,8 @@ void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::
 }  // namespace
 
 int compare_runs(const CompareArguments& a) {
-  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
-  for (const std::string& column : a.y) column_of_log(column, {"", 0, "--y"});
+  if (!a.x.empty()) curve_column(a.x, {}, {"", 0, "--x"});
+  for (const std::string& column : a.y) curve_column(column, {}, {"", 0, "--y"});
   Wanted wanted;
   if (a.svg.empty() && a.csv.empty()) wanted.page = a.page.empty() ? "compare.html" : a.page;
   for (const auto& [file, option] :

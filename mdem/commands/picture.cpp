@@ -6,7 +6,7 @@
 #include "commands/commands.hpp"
 #include "io/files.hpp"
 #include "io/limits_file.hpp"
-#include "io/log.hpp"
+#include "io/run_results.hpp"
 #include "model/error.hpp"
 #include "report/drawing.hpp"
 #include "run/pages/run_plate.hpp"
@@ -25,7 +25,7 @@ std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& 
         out.back().emplace_back();
       else
         out.back().back() += c;
-    for (const std::string& column : out.back()) column_of_log(column, {"", 0, "--curves"});
+    for (const std::string& column : out.back()) curve_column(column, {}, {"", 0, "--curves"});
   }
   return out;
 }
@@ -43,7 +43,7 @@ int picture_command(const PictureArguments& a) {
   options.colour = a.colour;
   options.sections = a.sections;
   options.curves = curves_of(a.curves);
-  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
+  if (!a.x.empty()) curve_column(a.x, {}, {"", 0, "--x"});
   options.x = a.x;
   options.width = a.width;
   options.highest = a.highest;

@@ -63,6 +63,18 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
   EXPECT_EQ(links.find("spacing_nm"), std::string::npos) << links;
   EXPECT_EQ(run("help '[run]'").out.find("[run]\n"), 0u);
+  ASSERT_EQ(run("new wide --kind bend").code, 0);
+  bool code = false;  // examples and formulas stay as they are
+  for (const std::string& text : {o.out, keys, run("run --help").out, run("compare --help").out, run("help damping").out,
+                                  run("help grip").out, run("help slip").out, slurp(dir / "wide.toml")}) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      code = code != (line.find("```") != std::string::npos);
+      const auto columns =
+          std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+      EXPECT_TRUE(code || columns <= 120) << line;
+    }
+  }
   const std::string length = run("help length_nm").out;
   for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
     EXPECT_NE(length.find(word), std::string::npos) << length;
@@ -1375,10 +1387,14 @@ tolerance = 0.2
   EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
+  ASSERT_EQ(run("picture r -o r.svg --curves torque_nN_nm").code, 0);
+  const std::string picture = slurp(dir / "r.svg");
+  for (const char* part : {"class=\"error e0\"", ">band: one standard error<"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
   const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
   ASSERT_EQ(torsion.code, 0) << torsion.err;
   EXPECT_THAT(torsion.out,
-              HasSubstr("one point, so torsion.svg shows its torque_upper_nN_nm against rotation_deg"));
+              HasSubstr("one point, so torsion.svg shows its torque_nN_nm against rotation_deg"));
   EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
   const std::string table = slurp(dir / "torsion.csv");
   ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
