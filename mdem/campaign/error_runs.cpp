@@ -160,7 +160,7 @@ class InputsOf {
   ErrorInputs out_;
 };
 
-// Of the text of a file with its values changed. They are read as they stand there, so that no digit is lost.
+// The text of a file with its values changed. They are read as they stand there, so that no digit is lost.
 std::string changed_text(std::string text, const VariedNumber& source, bool plus) {
   if (source.of == InputNumber::Of::set) text = with_start_of_pull(text, source.error.name);
   const double step = (plus ? 1 : -1) * source.error.step;

@@ -25,6 +25,15 @@ CLI::Validator number_within(const Bounds& bounds);
 constexpr int unbounded = std::numeric_limits<int>::max();
 CLI::Validator whole_number(int least, int most = unbounded);
 
+// What the verbs of a program know, and how they end it. Each verb is a file with its options, one row each in
+// add_VERB(app, program), and what it does. Help, man page, completions and the site's page of commands are written from
+// the rows.
+struct Program {
+  char** argv;          // words of the command line
+  std::string command;  // the same as typed in a shell, for verbs that write it into a file
+  int code = 0;         // exit code of the verb that was called
+};
+
 // How a program describes itself.
 struct Description {
   std::string program;  // the name of its file

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/clocks.hpp"
 #include "observe/rope_size.hpp"
 #include "plan/energy_check.hpp"
@@ -31,6 +31,13 @@
 
 namespace ropewalk {
 namespace {
+
+struct CheckArguments {
+  std::string path;       // a scene, or the directory of a run
+  bool accuracy = false;  // compares a run with a finer model
+  double stretch = 4;     // ps
+  std::string against;    // directory of a finer run of the same scene; empty: a stretch is run
+};
 
 void say_source(const Scene& scene, const Prepared& p) {
   const Topology& t = p.topology;
@@ -141,11 +148,13 @@ void say_statics(const Scene& scene, const Simulation& simulation) {
 // Batch systems wait for some seconds after TERM, often 30. `each`: seconds of a step.
 void say_stop(const Simulation& simulation, double each) {
   constexpr double disk = 1e8, worth_a_word = 2;  // bytes per second, as disks that many share take them; s
-  const double bytes = 2.0 * static_cast<double>(simulation.serialise().size()),  // the state, and one to go back to
+  const double bytes =
+                   2.0 * static_cast<double>(simulation.serialise().size()),  // the state, and one to go back to
       seconds = std::max(RunSchedule::patience, 2 * each) + bytes / disk;
   if (seconds < worth_a_word) return;
   fmt::print(
-      "told to stop, a run ends after about {:.0f} s: it writes its checkpoint of {:.2g} MB first, here counted with "
+      "told to stop, a run ends after about {:.0f} s: it writes its checkpoint of {:.2g} MB first, here counted "
+      "with "
       "100 MB per second\n",
       seconds, bytes / 1e6);
 }
@@ -211,8 +220,6 @@ void say_own_forces(const Scene& scene, const Simulation& simulation) {
         parts, found.by_forces, found.by_energy);
 }
 
-}  // namespace
-
 int check_command(const CheckArguments& a) {
   const std::string& path = a.path;
   const bool is_run = std::filesystem::is_directory(path);
@@ -276,6 +283,25 @@ int check_command(const CheckArguments& a) {
   say_sizes(scene, p);
   say_stop(simulation, each);
   return 0;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<CheckArguments>();
+  CLI::App* c = app.add_subcommand(
+      "check",
+      "Read a scene, say what it would do and how long it would take; or judge a run by the [[expect]] "
+      "tables of its scene, or by a finer model");
+  c->add_option("scene", a->path, "Scene file (TOML), or the directory of a finished run")->required();
+  c->add_flag("--accuracy", a->accuracy,
+              "Of a run: continue it with its own model and with a finer one, and print how far they differ");
+  c->add_option("--stretch", a->stretch, "With --accuracy: ps that both models go on")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive()));
+  c->add_option("--against", a->against,
+                "With --accuracy: directory of a run of the same scene by a finer model, in place of the stretch");
+  c->callback([a, &program] { program.code = check_command(*a); });
 }
 
 }  // namespace ropewalk

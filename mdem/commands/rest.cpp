@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "campaign/static_rest.hpp"
 #include "campaign/sweep_runs.hpp"
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
@@ -22,6 +23,18 @@
 
 namespace ropewalk {
 namespace {
+
+struct RestArguments {
+  std::string scene;
+  std::string out;                  // empty: runs/NAME-rest
+  std::optional<double> viscosity;  // eV ps/nm^3
+  double tolerance = 0.02;          // part of the geometric twist, within which both sides agree
+  int jobs = 0;                     // 0: one for each core
+  bool by_statics = false;          // by Newton's method, without runs
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -100,8 +113,6 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
   return std::all_of(rests.begin(), rests.end(), [](const StaticRest& r) { return r.at_rest; }) ? 0 : 4;
 }
 
-}  // namespace
-
 int rest_command(const RestArguments& a) {
   Scene scene = read_scene(a.scene);
   if (scene.start.turn != 0)
@@ -146,6 +157,31 @@ int rest_command(const RestArguments& a) {
   fmt::print("{}\n{}Numbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words,
              quoted ? left_out_of_rest() + "\n" : "", dir.path, dir.path);
   return 0;
+}
+
+}  // namespace
+
+void add_rest(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<RestArguments>();
+  CLI::App* c = app.add_subcommand(
+      "rest", "Where a rope under a moment comes to rest: approached from below and from above, beside theory");
+  c->add_option("scene", a->scene, "Scene (TOML): a [rope] with [twist]")->required();
+  c->add_option("--out", a->out, "Directory of both runs; the same command goes on [default: runs/NAME-rest]");
+  c->add_option("--viscosity", a->viscosity,
+                "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--tolerance", a->tolerance,
+                "Relative tolerance of the twist: of a side, to be at rest, and of both, to agree")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-4, 0.5));
+  c->add_option("-j,--jobs", a->jobs, "Runs at a time [default: one for each core]")->check(thread_range());
+  c->add_flag(
+      "--static", a->by_statics,
+      "By Newton's method, without runs: the equilibrium states without friction, and whether they are stable");
+  c->add_flag("--force", a->force, "Replace runs of another scene");
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--quiet", a->quiet, "No progress");
+  c->callback([a, &program] { program.code = rest_command(*a); });
 }
 
 }  // namespace ropewalk

@@ -9,8 +9,8 @@
 #include "campaign/static_threshold.hpp"
 #include "campaign/threshold_search.hpp"
 #include "commands/cluster_scripts.hpp"
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
@@ -22,6 +22,19 @@
 
 namespace ropewalk {
 namespace {
+
+struct ThresholdArguments {
+  std::string file;
+  std::string out;                // empty: FILE without .toml
+  std::string known;              // trials.csv of an earlier search
+  std::vector<std::string> only;  // numbers from 1 or names of points; empty: all
+  std::string slurm, snakemake;   // write this file and run nothing
+  int jobs = 0;                   // points at a time; 0: one for each core
+  bool theory = false;            // run nothing
+  bool by_statics = false;        // by Newton's method, without runs
+  bool force = false;
+  bool quiet = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -82,8 +95,6 @@ int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const
   return 0;
 }
 
-}  // namespace
-
 int threshold_command(const ThresholdArguments& a) {
   Sweep sweep = read_sweep(a.file);
   if (!sweep.threshold)
@@ -124,6 +135,33 @@ int threshold_command(const ThresholdArguments& a) {
   if (a.only.empty()) print_results(dir, search.results());
   for (const std::string& name : failed) tell_not_ended(dir, name);
   return failed.empty() ? 0 : 3;
+}
+
+}  // namespace
+
+void add_threshold(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ThresholdArguments>();
+  CLI::App* c = app.add_subcommand(
+      "threshold",
+      "The critical value of a key at each point of a sweep, by bisection, beside theory: a phase diagram");
+  c->add_option("file", a->file, "Sweep (TOML) with [threshold]: key, from, to, and column and above, or shape")
+      ->required();
+  c->add_option("--out", a->out, "Directory of the campaign, where the same command goes on [default: FILE]");
+  c->add_option("-j,--jobs", a->jobs, "Points at a time, each on one core [default: all cores]")
+      ->check(thread_range());
+  c->add_option("--known", a->known,
+                "trials.csv of an earlier search: its trials of the same scenes are not run again")
+      ->check(CLI::ExistingFile);
+  c->add_option("--only", a->only, "Numbers from 1 or names of the points to search")->delimiter(',');
+  c->add_option("--slurm", a->slurm, "Only write a SLURM array with a job for each point to this file");
+  c->add_option("--snakemake", a->snakemake, "Only write a Snakemake file to this file");
+  c->add_flag("--theory", a->theory, "Run nothing: tables and page of theory and of the runs that are there");
+  c->add_flag(
+      "--static", a->by_statics,
+      "Run nothing: find, by statics, between which values the equilibrium without friction loses its stability");
+  c->add_flag("--force", a->force, "Replace runs of another scene");
+  c->add_flag("--quiet", a->quiet, "No progress");
+  c->callback([a, &program] { program.code = threshold_command(*a); });
 }
 
 }  // namespace ropewalk

@@ -18,7 +18,7 @@ using units::degree;
 
 constexpr double rounding = 1e-4;  // relative to the potential energies: pairs are in single precision
 
-// Of the rope whose mass counts.
+// Energies of what is measured: of one period of a slice, else of all.
 const Energies& energies(const M& m) {
   return m.account.period ? m.account.period->potential : m.account.potential;
 }

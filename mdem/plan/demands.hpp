@@ -76,7 +76,7 @@ class DemandsAhead {
   // A load on elements that are no ends.
   struct Inner {
     LoadEffect does;
-    double elements = 1;    // of one tube, the most
+    double elements = 1;    // largest number in one tube
     double from_lower = 0;  // nm, along the tube: of their middle
   };
   std::vector<Inner> inner_;

@@ -20,8 +20,8 @@ namespace ropewalk {
 
 class TermPulls {
  public:
-  // Of a tube of one type: least and largest tension (eV/nm), and the largest force across times its distance from
-  // what holds the tube (eV).
+  // Loads of a tube of one type: least and largest tension (eV/nm), and the largest force across times its distance
+  // from what holds the tube (eV).
   struct Pulls {
     double least = 0, most = 0, moment = 0;
   };
@@ -50,7 +50,7 @@ class TermPulls {
   State start_;
   std::vector<std::unique_ptr<ForceTerm>> terms_;
   std::vector<OfTube> tubes_;
-  std::vector<std::array<char, 3>> held_;  // of each element, by axis
+  std::vector<std::array<char, 3>> held_;  // whether each element is held, by axis
 };
 
 }  // namespace ropewalk

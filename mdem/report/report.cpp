@@ -636,7 +636,7 @@ bool is_zero(const ReportInput& in, const Panel& panel) {
   });
 }
 
-// Of a rope. Charts that would show a line at zero are named instead.
+// The part on the shape of a rope. Charts that would show a line at zero are named instead.
 std::string shape_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   std::vector<std::string> charts, zero;
   const auto add = [&](const Panel& panel) {

@@ -274,7 +274,7 @@ std::string stroke_class(const ChartLine& line) {
   return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
 }
 
-// The line as far as the model holds, and what comes behind.
+// Draws the line in two parts: up to the point where a limit is passed, and from there on.
 std::string draw_in_two(const ChartLine& line, const Plot& plot) {
   ChartLine within = line, behind = line;
   const auto cut = [](std::vector<double>& v, std::size_t from, std::size_t to) {

@@ -319,7 +319,7 @@ namespace {
 void refuse_statics(const Scene& scene, const Simulation& simulation) {
   if (scene.statics.steps > 0 && load_step_times(simulation.loads(), scene.statics.steps).empty())
     throw InputError(
-        {scene.path, 0, "statics.steps"}, "has no schedule to go along: no load and no grip changes",
+        place_in(scene, "statics.steps"), "has no schedule to go along: no load and no grip changes",
         "ramp a load, as by twist.rate_nN_nm_per_ps, or take [statics] away for the one state of rest");
   if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
   const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);

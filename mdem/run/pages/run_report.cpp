@@ -108,7 +108,7 @@ void add_size(const Scene& scene, const Observer& observer, ReportInput& in) {
        "by tan β = π d T, with the β of the last row; yarn_diameter_um in [periodic] names another"});
 }
 
-// Of a film: how its tubes hang together, at first and in the end.
+// Adds how the tubes of a film hang together, at first and in the end.
 void add_network(const Scene& scene, const StoredEvents& events, const std::vector<StoredFrame>& frames,
                  ReportInput& in) {
   if (frames.empty()) return;
