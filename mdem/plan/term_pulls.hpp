@@ -21,8 +21,8 @@ namespace ropewalk {
 
 class TermPulls {
  public:
-  // Of a tube of one type: least and largest tension (eV/nm), and the largest force across times its distance from
-  // what holds the tube (eV).
+  // Loads of a tube of one type: least and largest tension (eV/nm), and the largest force across times its distance
+  // from what holds the tube (eV).
   struct Pulls {
     double least = 0, most = 0, moment = 0;
   };

@@ -17,7 +17,7 @@ constexpr double first_steps = 20, next_steps = 8, products_of_step = 30, solves
 constexpr double sparse_copies = 9;       // of K, for the modes
 constexpr double bytes_per_second = 4e9;  // of a decomposition that is read again for each solution
 
-// Of the processor: others may use it as well.
+// Processor time of some work: other programs may use the processor as well.
 template <class Work>
 double seconds_of(const Work& work) {
   const std::clock_t began = std::clock();
