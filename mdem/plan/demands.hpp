@@ -76,11 +76,7 @@ class DemandsAhead {
   // A load on elements that are no ends.
   struct Inner {
     LoadEffect does;
-<<<<<<< HEAD
-    double elements = 1;    // largest number of its elements in one tube
-=======
     double elements = 1;    // largest number in one tube
->>>>>>> merged
     double from_lower = 0;  // nm, along the tube: of their middle
   };
   std::vector<Inner> inner_;

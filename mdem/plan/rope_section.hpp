@@ -37,11 +37,7 @@ class RopeSection {
  private:
   double strain(double rho2, double winding, double from) const;
 
-<<<<<<< HEAD
-  double mean_ = 0, mean_square_ = 0, least_ = 0, most_ = 0;  // moments and range of rho^2, nm^2 and nm^4
-=======
   double mean_ = 0, mean_square_ = 0, least_ = 0, most_ = 0;  // rho^2 (nm^2), mean_square_: rho^4 (nm^4)
->>>>>>> merged
 };
 
 }  // namespace ropewalk
