@@ -66,7 +66,7 @@ std::string line_of(const SceneKey& k) {
   const std::string begin =
       fmt::format("  {:31} {:10} {:30}", k.key, k.unit, k.standard.empty() ? k.value : k.standard);
   if (begin.size() <= 74 && begin.size() + 1 + k.meaning.size() <= widest_line) return begin + " " + k.meaning + "\n";
-  std::string text = begin.substr(0, begin.find_last_not_of(' ') + 1);
+  std::string text = within_width(begin.substr(0, begin.find_last_not_of(' ') + 1));
   for (const std::string& line : lines_of(k.meaning, widest_line - 6)) text += "\n      " + line;
   return text + "\n";
 }

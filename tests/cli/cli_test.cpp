@@ -1385,11 +1385,11 @@ tolerance = 0.2
   EXPECT_NEAR(std::stod(cells[2]), torque.at("error").get<double>(), 0.01 * torque.at("error").get<double>());
   // A maximum has its own error: of the largest torque of each run, not of the torques in one row.
   const Json largest = found.at("results").at("torque_max_nN_nm");
-  EXPECT_GE(largest.at("value").get<double>(), torque.at("value").get<double>());
+  EXPECT_NEAR(largest.at("value").get<double>(), torque.at("value").get<double>(), 1) << "the mean of both ends";
   for (const char* part : {"statistics", "numerics", "parameters", "potential"})
     EXPECT_GT(largest.at(part).get<double>(), 0) << part;
   EXPECT_EQ(largest.at("runs_without"), 0);
-  EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
+  EXPECT_TRUE(std::regex_search(o.out, std::regex("of the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
   ASSERT_EQ(run("picture r -o r.svg --curves torque_nN_nm").code, 0);
