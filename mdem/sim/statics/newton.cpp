@@ -424,7 +424,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         pace->rate = std::max(2 * pace->rate, 0.02);
         continue;
       }
-      // One direction is good for more where forces agree with the model, as those of tubes that slide do.
+      // A direction serves for a longer step while the forces agree with the model, as those of sliding tubes do.
       while (step.scale < 1 && step.disagreement() < 0.05 && step.scale * far < most_widened * options_.farthest) {
         Simulation there = s_;
         s_ = before;
