@@ -98,7 +98,7 @@ thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .numbers td.soft{min-width:8em;text-align:left!important}
 .facts tbody th{font-weight:600;padding-right:26px;white-space:nowrap}
 .facts td{overflow-wrap:anywhere}
-.facts td.number{overflow-wrap:normal}
+.facts td.number,.whole td{overflow-wrap:normal!important}
 @media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}
 .facts:not(.numbers) tbody th{white-space:normal;overflow-wrap:anywhere;padding-right:12px}}
 @page{margin:13mm 14mm}

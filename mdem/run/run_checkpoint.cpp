@@ -17,6 +17,7 @@
 #include "io/frames/frames.hpp"
 #include "io/running_hash.hpp"
 #include "model/error.hpp"
+#include "scene/missing_forces.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "version.hpp"
@@ -372,6 +373,7 @@ ResumePoint find_resume_point(const RunDirectory& dir) {
 }
 
 Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prepared& p, const RunCheckpoint& c) {
+  refuse_missing_forces(c.origin.own_forces, dir.path);
   Simulation s = start(scene, p);
   try {
     s.restore(c.simulation);

@@ -1160,6 +1160,11 @@ TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     EXPECT_NE(o.err.find(expect[1].str()), std::string::npos) << entry.path() << "\n" << o.err << "\n" << expect[1];
     EXPECT_FALSE(fs::exists(dir / "never")) << entry.path();
+    // What is not there stands in no line.
+    const std::regex absent("is missing|is empty|there is nothing in|cannot be opened|and the set .* has no \\[contact");
+    if (!std::regex_search(o.err, absent)) {
+      EXPECT_TRUE(std::regex_search(o.err, std::regex("\\.(toml|csv):[0-9]+: "))) << o.err;
+    }
   }
   EXPECT_GE(count, 40);
 }
@@ -1182,9 +1187,16 @@ reading = "per-tube"
 rate_nN_nm_per_ps = 0.2
 hold_ps = 10
 )");
-  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
-  const Outcome o = run("errors r --json --quiet");
-  ASSERT_EQ(o.code, 0) << o.err;
+  // Repeats end where the run was asked to end, and not at the end of the scene.
+  const auto end_of = [&](const char* log) { return ropewalk::read_log((dir / log).string()).back()["time_ps"]; };
+  Outcome o;
+  for (const char* go_on : {"run rope.toml --out r --quiet --until 1", "resume r --quiet --until 21"}) {
+    ASSERT_EQ(run(go_on).code, 0);
+    o = run("errors r --json --quiet");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(end_of("r/errors/GJ-plus/log.csv"), end_of("r/log.csv")) << go_on;
+  }
+  EXPECT_NEAR(end_of("r/log.csv"), 21, 0.05);
   const Json errors = Json::parse(o.out);
   const Json twist = errors.at("at_the_end").at("twist_eV");
   const double value = twist.at("value"), parts = twist.at("parts").at("GJ");
