@@ -206,7 +206,7 @@ std::string id_of_program() { return fmt::format("{} ({})", version, git_id); }
 enum class Format { this_one, another, damaged };
 
 Format format_of_checkpoint(const std::string& path) {
-  constexpr std::size_t number = 20;  // of "ROPEWALK-CHECKPOINT "
+  constexpr std::size_t number = 20;  // length of "ROPEWALK-CHECKPOINT "
   std::string begin(std::strlen(title), '\0');
   begin.resize(read_some(path, opened_to_read(path).get(), begin.data(), begin.size()));
   if (begin == title) return Format::this_one;
