@@ -4,20 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 
 #include "io/csv_reader.hpp"
+#include "io/manifest.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
 namespace {
 
-constexpr const char* other_log =
-    "is this the log.csv of a run by this version of ropewalk? If not, use the version in its manifest.json, or "
-    "run "
-    "the scene again";
 constexpr const char* damaged_log = "the file was changed or damaged; restore it, or run the scene again";
 
 LogRow row_of(const CsvReader& csv) {
@@ -35,24 +34,36 @@ LogRow row_of(const CsvReader& csv) {
   return row;
 }
 
+// What to do about a log with other columns; names the version that the manifest beside it names.
+std::string other_log(const std::string& path) {
+  std::string of = "the version in its manifest.json";
+  try {
+    const std::filesystem::path manifest = std::filesystem::path(path).parent_path() / "manifest.json";
+    if (std::filesystem::exists(manifest))
+      of = "ropewalk " + printable(read_manifest(manifest.string()).version, 40) + ", which its manifest.json names";
+  } catch (const std::exception&) {  // a damaged one says nothing
+  }
+  return "is this the log.csv of a run by this version of ropewalk? If not, use " + of + ", or run the scene again";
+}
+
 void read_header(CsvReader& csv, const std::string& path) {
-  if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log);
+  if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log(path));
   const std::vector<std::string_view>& names = csv.cells();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::string name = printable(std::string(names[k]), 40);
     if (k == observables().size())
-      csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log);
+      csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log(path));
     if (names[k] != observables()[k].name)
       csv.fail(
           "",
           fmt::format("column {} of the header is \"{}\", \"{}\" is needed", k + 1, name, observables()[k].name),
-          other_log);
+          other_log(path));
   }
   if (names.size() < observables().size())
     csv.fail("",
              fmt::format("the header ends after column {}, \"{}\" is needed next", names.size(),
                          observables()[names.size()].name),
-             other_log);
+             other_log(path));
 }
 
 }  // namespace
