@@ -77,6 +77,7 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
   for (std::size_t axis = 0; axis < moved_aside_.size(); ++axis) moved_aside_[axis] = moved_apart(drives_, axis);
   for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
   period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
+  ends_inside_ = p.topology.groups.images > 0 && p.topology.strands() < p.topology.tubes();
   upright_ = stand_upright(p.state);
   if (upright_) section_ = RopeSection(p);
   rope_radius_ = section_.radius();
@@ -239,7 +240,7 @@ void DemandsAhead::add(const At& what, Demands& out) const {
   out.twist = std::max(out.twist, std::fabs(what.twist));
   out.strain = std::max(out.strain, what.strain.high);
   out.pressed = std::max(out.pressed, -what.strain.low);
-  if (length_kept_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
+  if (length_kept_ && !ends_inside_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
 }
 
 Demands DemandsAhead::at(double time) const {
@@ -249,9 +250,11 @@ Demands DemandsAhead::at(double time) const {
                pull = begun && upright_ ? axial(LoadEffect::z, time) + at_once(axial(LoadEffect::z, 0)) : 0;
   // As the ends keep it; without them, as it starts.
   const double more = turned(time), winding = winding_ + more;
-  const double twist = twist_.farthest(more);
+  const double twist = twist_.farthest(ends_inside_ ? 0 : more);
   const double clings = begun ? clinging(couple, more) : winding_;
-  const Range wound = Range().moved(section_.outer_strain(clings, winding_), section_.inner_strain(clings, winding_));
+  Range wound;
+  if (!ends_inside_)
+    wound = wound.moved(section_.outer_strain(clings, winding_), section_.inner_strain(clings, winding_));
   const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
   double stretched = 0;  // extension by the way aside
   double shortened = 0;  // beyond what a column bears
