@@ -1,5 +1,6 @@
 // `compare`: the logs of runs and campaigns in one figure, their last states side by side; or parameter sets.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -71,8 +72,15 @@ struct Wanted {
 };
 
 // The groups without runs that have failed or still go on: the largest stress of such a run is not its strength.
-std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string& where) {
+// `left_out` names these.
+std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string& where, std::string& left_out) {
   std::size_t all = 0, left = 0;
+  std::vector<std::string> gone;
+  for (const RunGroup& group : groups)
+    if (std::none_of(group.runs.begin(), group.runs.end(), [](const RunDirectory& run) {
+          return progress_of(run).stage == PointProgress::Stage::ended;
+        }))
+      gone.push_back(group.name);
   for (RunGroup& group : groups) {
     all += group.runs.size();
     const auto goes_on = [](const RunDirectory& run) {
@@ -86,8 +94,10 @@ std::vector<RunGroup> ended_ones(std::vector<RunGroup> groups, const std::string
   if (groups.empty())
     throw InputError({where, 0, ""}, "has no run that has ended",
                      "go on with `ropewalk sweep` or `ropewalk resume`");
-  if (left < all)
-    fmt::print(stderr, "note: {} of {} runs have not come to their end and are left out.\n", all - left, all);
+  if (left == all) return groups;
+  left_out = fmt::format("{} of {} runs have not come to their end", all - left, all);
+  if (!gone.empty()) left_out += fmt::format(", none of {}", fmt::join(gone, ", none of "));
+  fmt::print(stderr, "note: {} and are left out.\n", left_out);
   return groups;
 }
 
@@ -104,7 +114,7 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
   kind.yarn_diameter = 1e3 * a.yarn_diameter_um;
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
   column_of_log(x, {"", 0, "--x"});
-  const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
+  const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front(), kind.left_out);
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
   RunsFigure figure;

@@ -70,6 +70,19 @@ std::vector<std::string> listed_verbs(const CLI::App& app) {
   return names;
 }
 
+// The page on what is neither a verb nor a key.
+std::string page_of(const std::string& topic) {
+  if (topic == "yarn")
+    return "yarn: docs/how-to/yarn.md says what of a yarn a slice tells; begin with: ropewalk new my-yarn --kind "
+           "yarn\n";
+  if (topic == "filament")
+    return "filament: docs/how-to/filament.md says how to write the parameters of what is no carbon tube, such as "
+           "f-actin\n";
+  if (topic == "multi-walled" || topic == "multiwalled" || topic == "multi-wall")
+    return "multi-walled: tubes inside of one another are refused; docs/how-to/yarn.md has two estimates\n";
+  return "";
+}
+
 // Help on the keys of a scene. verb_before_help() gives the help of verbs.
 void add_help(CLI::App& app) {
   const auto topic = std::make_shared<std::string>();
@@ -82,9 +95,9 @@ void add_help(CLI::App& app) {
       std::puts(scene_key_help().c_str());
       return;
     }
-    std::string text;  // one word may be a table, a load, a key and a limit
-    for (const std::string& part :
-         {table_help(*topic), load_help(*topic), scene_key_help(*topic), limit_help(*topic)})
+    std::string text;  // one word may be a table, a load, a key, a limit and a page
+    for (const std::string& part : {table_help(*topic), load_help(*topic), scene_key_help(*topic), limit_help(*topic),
+                                    page_of(*topic)})
       text += (text.empty() || part.empty() ? "" : "\n") + part;
     if (!text.empty()) {
       std::fputs(text.c_str(), stdout);

@@ -4,20 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 
 #include "io/csv_reader.hpp"
+#include "io/manifest.hpp"
 #include "io/toml_table.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk {
 namespace {
 
-constexpr const char* other_log =
-    "is this the log.csv of a run by this version of ropewalk? If not, use the version in its manifest.json, or "
-    "run "
-    "the scene again";
 constexpr const char* damaged_log = "the file was changed or damaged; restore it, or run the scene again";
 
 // Columns that logs of 0.3.0 lack, whose runs had nothing of them: they read as 0.
@@ -38,9 +37,21 @@ LogRow row_of(const CsvReader& csv, const std::vector<std::size_t>& columns) {
   return row;
 }
 
+// What to do about a log with other columns; names the version that the manifest beside it names.
+std::string other_log(const std::string& path) {
+  std::string of = "the version in its manifest.json";
+  try {
+    const std::filesystem::path manifest = std::filesystem::path(path).parent_path() / "manifest.json";
+    if (std::filesystem::exists(manifest))
+      of = "ropewalk " + printable(read_manifest(manifest.string()).version, 40) + ", which its manifest.json names";
+  } catch (const std::exception&) {  // a damaged one says nothing
+  }
+  return "is this the log.csv of a run by this version of ropewalk? If not, use " + of + ", or run the scene again";
+}
+
 // The observables of its columns.
 std::vector<std::size_t> read_header(CsvReader& csv, const std::string& path) {
-  if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log);
+  if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log(path));
   const std::vector<std::string_view>& names = csv.cells();
   std::vector<std::size_t> columns;
   std::size_t next = 0;
@@ -49,12 +60,12 @@ std::vector<std::size_t> read_header(CsvReader& csv, const std::string& path) {
       ++next;
     const std::string name = printable(std::string(names[k]), 40);
     if (next == observables().size())
-      csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log);
+      csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log(path));
     if (names[k] != observables()[next].name)
       csv.fail("",
                fmt::format("column {} of the header is \"{}\", \"{}\" is needed", k + 1, name,
                            observables()[next].name),
-               other_log);
+               other_log(path));
     columns.push_back(next);
   }
   while (next < observables().size() && is_later(observables()[next].name)) ++next;
@@ -62,7 +73,7 @@ std::vector<std::size_t> read_header(CsvReader& csv, const std::string& path) {
     csv.fail("",
              fmt::format("the header ends after column {}, \"{}\" is needed next", names.size(),
                          observables()[next].name),
-             other_log);
+             other_log(path));
   return columns;
 }
 
@@ -127,7 +138,7 @@ std::vector<LogRow> read_log(const std::string& path) {
 void check_log_header(const std::string& path) {
   CsvReader csv(path, CsvReader::LastLine::may_be_cut_off);
   if (read_header(csv, path).size() < observables().size())
-    throw InputError({path, 1, ""}, "lacks columns that this version writes", other_log);
+    throw InputError({path, 1, ""}, "lacks columns that this version writes", other_log(path));
 }
 
 std::size_t column_of_log(const std::string& name, const InputError::Place& place) {

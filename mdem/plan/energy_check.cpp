@@ -8,7 +8,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double shaken = 0.01, step = 1e-5;  // nm and rad
+constexpr double shaken_by = 0.01, half_motion = 1e-5;  // nm and rad
 
 Eigen::VectorXd random_motion(std::size_t elements, double size, Random& random) {
   Eigen::VectorXd out(6 * static_cast<Eigen::Index>(elements));
@@ -32,11 +32,11 @@ EnergyCheck energy_check(const Simulation& simulation) {
     return forces.energy.potential();
   };
   Random random(1);
-  const State at = moved(simulation.state(), random_motion(elements, shaken, random));
+  const State at = moved(simulation.state(), random_motion(elements, shaken_by, random));
   const Eigen::VectorXd motion = random_motion(elements, 1, random);
-  const double ahead = energy(moved(at, step * motion)), behind = energy(moved(at, -step * motion));
+  const double ahead = energy(moved(at, half_motion * motion)), behind = energy(moved(at, -half_motion * motion));
   EnergyCheck out;
-  out.by_energy = (behind - ahead) / (2 * step);
+  out.by_energy = (behind - ahead) / (2 * half_motion);
   energy(at);
   for (std::size_t i = 0; i < elements; ++i) {
     const auto row = 6 * static_cast<Eigen::Index>(i);

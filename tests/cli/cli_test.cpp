@@ -57,6 +57,9 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
     EXPECT_NE(keys.find(word), std::string::npos) << word;
     EXPECT_EQ(run("run --help").out.find(word), std::string::npos) << "a verb has its own options alone";
   }
+  EXPECT_THAT(run("help yarn").out, HasSubstr("docs/how-to/yarn.md"));
+  EXPECT_THAT(run("help filament").out, HasSubstr("docs/how-to/filament.md"));
+  EXPECT_THAT(run("help multi-walled").out, HasSubstr("are refused"));
   EXPECT_EQ(run("help run").out, run("run --help").out);
   const std::string links = run("help links").out;
   EXPECT_EQ(links.find("[[links]]\n"), 0u) << links;
