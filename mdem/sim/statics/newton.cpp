@@ -164,11 +164,11 @@ std::vector<NewtonStatics::SectionMove> NewtonStatics::section_moves(const Vecto
 
 // Turns of whole sections count by their angle alone: they change nothing between tubes. A tube that touches no
 // other one may go far, as long as it does not turn much: what turns by t along straight lines becomes longer by
-// t^2/2.
-double NewtonStatics::farthest(const VectorXd& d) const {
+// t^2/2. Where a clamp leads, all of its turn is borne by the bonds beside it, and counts.
+double NewtonStatics::farthest(const VectorXd& d, bool led_by_clamps) const {
   constexpr double of_turns = 3, arm_of_sections = 0.5;
   const bool alone = !s_.interaction().law || s_.topology().tubes() == 1;
-  const std::vector<SectionMove> sections = section_moves(d);
+  const std::vector<SectionMove> sections = led_by_clamps ? std::vector<SectionMove>{} : section_moves(d);
   double most = 0;
   for (const SectionMove& section : sections) most = std::max(most, arm_of_sections * std::fabs(section.angle));
   for (int t = 0; t < s_.topology().tubes(); ++t)
@@ -297,7 +297,7 @@ bool NewtonStatics::follow_once(const At& at, double until) {
   for (int tries = 0; tries < most_tries; ++tries) {
     VectorXd d = led(passes);
     if (d.isZero(0)) return move(d, passes);
-    if (const double far = farthest(d); far > options_.farthest) {
+    if (const double far = farthest(d, true); far > options_.farthest) {
       passes *= 0.9 * options_.farthest / far;
       continue;
     }
@@ -311,7 +311,7 @@ bool NewtonStatics::follow_once(const At& at, double until) {
     for (double rate = least_shift; rate < most_shift; rate *= 3)
       if (!solve(at, rate * rate, b, 0.01, follows).falls) break;
     d += follows;
-    const double far = farthest(d);
+    const double far = farthest(d, true);
     const Simulation before = s_;
     if (far < 2 * options_.farthest && move(d, passes)) return true;
     s_ = before;

@@ -96,7 +96,7 @@ class NewtonStatics {
   struct SectionMove;
   std::vector<SectionMove> section_moves(const Eigen::VectorXd& d) const;
   Eigen::VectorXd on_arcs(const Eigen::VectorXd& d, Eigen::VectorXd& onward) const;
-  double farthest(const Eigen::VectorXd& d) const;
+  double farthest(const Eigen::VectorXd& d, bool led_by_clamps = false) const;
   std::optional<Eigen::VectorXd> falling_motion(const At& at);
   bool push_along(const At& at, const Eigen::VectorXd& motion);
   double work_to_come(const At& at, const Eigen::VectorXd& d) const;
