@@ -331,4 +331,41 @@ int calibrate_command(const CalibrateArguments& a) {
   return 0;
 }
 
+void add_law(CLI::App& app, std::string& lj, double& cutoff) {
+  app.add_option("--lj", lj, "Lennard-Jones epsilon (eV) and sigma (nm) between atoms of two tubes")
+      ->capture_default_str();
+  app.add_option("--lj-cutoff", cutoff, "Its cutoff (nm), truncated as lj/cut does; 0: none")
+      ->capture_default_str();
+}
+
+void add_calibrate(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<CalibrateArguments>();
+  a->command = program.command;
+  app.add_option("--chirality", a->chirality, "n,m, as in 10,10 or 7,3");
+  app.add_option("--potential", a->potential, "tersoff, airebo, rebo or lcbop")->capture_default_str();
+  app.add_option("--potential-file", a->user_potential, "Your own pair_style and pair_coeff lines, one atom type");
+  add_law(app, a->lj, a->lj_cutoff);
+  app.add_flag("--envelope", a->envelope, "Measure kink, collapse and 1 % limits with LAMMPS (minutes)");
+  app.add_option("--envelope-of", a->envelope_of,
+                 "Take them from this set of the same tube and potential instead, with the rows of its table");
+  app.add_option("--out", a->out, "Parameter file; its tables lie beside it [default: cnt-N-M-POTENTIAL.toml]");
+  app.add_option("--keep", a->keep, "Keep LAMMPS's inputs and logs in this new directory");
+  app.add_option("--cell-length", a->stiffness.cell_length, "Least length of the periodic cells (nm); 0: chosen")
+      ->capture_default_str();
+  app.add_option("--strain", a->stiffness.largest_strain, "Fit window of stretch")->capture_default_str();
+  app.add_option("--shear", a->stiffness.largest_shear, "Fit window of twist: radius times twist")
+      ->capture_default_str();
+  app.add_option("--bend-lengths", a->bend_lengths, "Free lengths of the shorter and the longer bent tube (nm)")
+      ->capture_default_str();
+  app.add_flag("--json", a->json, "JSON");
+  app.add_flag("--force", a->force, "Replace existing files");
+  app.add_flag("--quiet", a->quiet, "No progress lines");
+  app.callback([&app, a, &program] {
+    if (!app.get_subcommands().empty()) return;
+    if (a->chirality.empty())
+      throw InputError({"", 0, "--chirality"}, "is missing", "write --chirality 10,10, or see --help");
+    program.code = calibrate_command(*a);
+  });
+}
+
 }  // namespace ropewalk::calibrate

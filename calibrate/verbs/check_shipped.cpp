@@ -11,6 +11,12 @@
 namespace ropewalk::calibrate {
 namespace {
 
+struct CheckShippedArguments {
+  std::string set = "cnt-5-5-tersoff";
+  bool all = false;
+  double tolerance = 0.002;  // relative
+};
+
 namespace fs = std::filesystem;
 
 double value_of(const ParameterSet& set, const std::string& key) {
@@ -72,8 +78,6 @@ bool check_one(const std::string& name, double tolerance) {
   return same;
 }
 
-}  // namespace
-
 int check_shipped_command(const CheckShippedArguments& a) {
   std::vector<std::string> names = {a.set};
   if (a.all) {
@@ -89,6 +93,19 @@ int check_shipped_command(const CheckShippedArguments& a) {
                           : fmt::format("differ by more than {:.2g} %: another LAMMPS or potential file?",
                                         100 * a.tolerance));
   return same ? 0 : 3;
+}
+
+}  // namespace
+
+void add_check_shipped(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<CheckShippedArguments>();
+  CLI::App* c = app.add_subcommand("check-shipped", "Make a shipped set anew and compare");
+  c->add_option("set", a->set, "Which")->capture_default_str();
+  c->add_flag("--all", a->all, "All of them");
+  c->add_option("--tolerance", a->tolerance, "Relative difference allowed")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive()));
+  c->callback([a, &program] { program.code = check_shipped_command(*a); });
 }
 
 }  // namespace ropewalk::calibrate

@@ -452,4 +452,16 @@ int fit_command(const FitArguments& a) {
   return 0;
 }
 
+void add_fit(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<FitArguments>();
+  a->command = program.command;
+  CLI::App* c = app.add_subcommand("fit", "Fit a table of energies of your own");
+  c->add_option("data", a->data, "CSV: energies of stretch, twist and bend, or of contact")->required();
+  c->add_option("settings", a->settings, "TOML: model, free parameters, starts and bounds")->required();
+  c->add_option("--out", a->out, "Write the base set with the fitted numbers to this file");
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--force", a->force, "Replace an existing file");
+  c->callback([a, &program] { program.code = fit_command(*a); });
+}
+
 }  // namespace ropewalk::calibrate

@@ -13,12 +13,23 @@
 #include "io/parameters_toml.hpp"
 #include "observe/time_mean.hpp"
 #include "run/run_directory.hpp"
+#include "scene/missing_forces.hpp"
 #include "sim/dynamics/thermostat.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
 
 namespace ropewalk::calibrate {
 namespace {
+
+struct FluctuationsArguments {
+  std::string run;         // its directory
+  double temperature = 0;  // K; 0: that of the run's thermostat
+  double after = 0;        // ps, which are left out
+  std::string against;     // set to compare with; empty: the run's
+  std::string out;         // set to write; empty: none
+  bool json = false, force = false;
+  std::string command;
+};
 
 constexpr auto fewest_frames = static_cast<long>(least_independent);
 constexpr double much_static = 0.1;
@@ -148,9 +159,9 @@ ParameterSet with_stiffness(ParameterSet set, const Fluctuation& f, double tempe
       {"bond.EA", f.rod.EA}, {"bond.EI", bend}, {"bond.GJ", f.rod.GJ}, {"atomistic.coupling", f.rod.coupling}};
   for (const auto& [key, m] : numbers)
     if (!std::isfinite(m.standard_error))
-      throw InputError({a.run, 0, "--out"}, fmt::format("{} has no error: the motion is too slow for this time", key),
-                       fmt::format("take a run of {:.1f} times the length",
-                                   f.frames_needed / static_cast<double>(f.frames)));
+      throw InputError(
+          {a.run, 0, "--out"}, fmt::format("{} has no error: the motion is too slow for this time", key),
+          fmt::format("take a run of {:.1f} times the length", f.frames_needed / static_cast<double>(f.frames)));
   for (const auto& [key, m] : numbers)
     for (Quantity& q : set.quantities)
       if (q.key == key) {
@@ -174,12 +185,11 @@ ParameterSet with_stiffness(ParameterSet set, const Fluctuation& f, double tempe
   return set;
 }
 
-}  // namespace
-
 int fluctuations_command(const FluctuationsArguments& a) {
   if (!a.out.empty()) check_output(a.out, "--out", a.force);
   const RunDirectory dir{a.run};
   Scene scene = read_run_scene(dir);
+  refuse_missing_forces(scene.missing_forces, dir.path);
   if (!a.out.empty() && scene.sets.size() > 1)
     throw InputError({a.run, 0, "--out"}, "the run has several kinds of tubes",
                      "write one set at a time: coarsen them alone");
@@ -211,6 +221,28 @@ int fluctuations_command(const FluctuationsArguments& a) {
   }
   if (a.json) fmt::print("{}\n", json.dump(1));
   return 0;
+}
+
+}  // namespace
+
+void add_fluctuations(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<FluctuationsArguments>();
+  a->command = program.command;
+  CLI::App* c = app.add_subcommand(
+      "fluctuations",
+      "EA, EI, GJ and their coupling from how the tubes of a run move in heat, beside those of a set");
+  c->add_option("run", a->run, "Directory of a run: of ropewalk run with a thermostat, or of ropewalk coarsen")
+      ->required();
+  c->add_option("--temperature", a->temperature, "Of the motion, K [default: that of the run's thermostat]")
+      ->check(number_within(Bounds::range(1, 1e4)));
+  c->add_option("--after", a->after, "Leave out so much time at the start, ps")
+      ->capture_default_str()
+      ->check(number_within(Bounds::non_negative()));
+  c->add_option("--against", a->against, "Set to compare with: a file or a name [default: that of the run]");
+  c->add_option("--out", a->out, "Write that set with these stiffnesses to this file");
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--force", a->force, "Replace an existing file");
+  c->callback([a, &program] { program.code = fluctuations_command(*a); });
 }
 
 }  // namespace ropewalk::calibrate

@@ -280,4 +280,31 @@ int friction_command(const FrictionArguments& arguments) {
   return 0;
 }
 
+void add_friction(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<FrictionArguments>();
+  a->command = program.command;
+  CLI::App* c = app.add_subcommand("friction", "Friction of two tubes side by side, from their atoms (minutes)");
+  c->add_option("set", a->first, "Parameter set of a tube: a file, or the name of a shipped one")->required();
+  c->add_option("other", a->second, "That of the other tube [default: the same]");
+  c->add_option("--out", a->out, "File [default: friction-N-M-N-M-POTENTIAL.toml]");
+  c->add_option("--keep", a->keep, "Keep LAMMPS's inputs and logs in this new directory");
+  c->add_option("--registers", a->registers, "Turns of both tubes that the strengths are means of")
+      ->capture_default_str()
+      ->check(CLI::Range(4, 10000));
+  c->add_option("--checks", a->checks, "Of these, how many LAMMPS relaxes")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 100));
+  c->add_option("--budget", a->budget_min, "Minutes, by which registers and checks are chosen; drag comes on top")
+      ->check(CLI::Range(0.5, 1e4))
+      ->excludes("--registers")
+      ->excludes("--checks");
+  c->add_option("--drag-ps", a->drag_ps, "Time at 300 K at each of three speeds, at least 10; 0: no drag")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(0, 1e5)));
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--force", a->force, "Replace an existing file");
+  c->add_flag("--quiet", a->quiet, "No progress lines");
+  c->callback([a, &program] { program.code = friction_command(*a); });
+}
+
 }  // namespace ropewalk::calibrate

@@ -17,6 +17,14 @@
 namespace ropewalk::calibrate {
 namespace {
 
+struct PullArguments {
+  std::string set;
+  std::string out;   // empty: NAME.toml in the current directory
+  std::string keep;  // empty: LAMMPS's files are removed at the end
+  bool force = false;
+  std::string command;
+};
+
 namespace fs = std::filesystem;
 
 double number_of(const ParameterSet& set, const std::string& key) {
@@ -61,8 +69,6 @@ void put_provenance(ParameterSet& set, const std::string& key, const std::string
     }
   set.provenance.emplace_back(key, value);
 }
-
-}  // namespace
 
 int pull_command(const PullArguments& a) {
   ParameterSet set = read_parameters(find_parameters(a.set, "", {"", 0, "set"}));
@@ -123,6 +129,21 @@ int pull_command(const PullArguments& a) {
              set.chirality.n, set.chirality.m, pull.force.back().value * units::eV_in_nN_nm, pull.end,
              pull.ended_by, pull.error, out);
   return 0;
+}
+
+}  // namespace
+
+void add_pull(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<PullArguments>();
+  a->command = program.command;
+  CLI::App* c = app.add_subcommand(
+      "pull", "Add to a set what its tube bears until it gives way, by LAMMPS: for [failure] (some seconds)");
+  c->add_option("set", a->set, "Parameter set with [bond.anharmonic]: a file, or the name of a shipped one")
+      ->required();
+  c->add_option("--out", a->out, "Parameter file; its tables lie beside it [default: NAME.toml]");
+  c->add_option("--keep", a->keep, "Keep LAMMPS's inputs and logs in this new directory");
+  c->add_flag("--force", a->force, "Replace existing files, as to change a set where it lies");
+  c->callback([a, &program] { program.code = pull_command(*a); });
 }
 
 }  // namespace ropewalk::calibrate

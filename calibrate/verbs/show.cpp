@@ -17,6 +17,12 @@
 namespace ropewalk::calibrate {
 namespace {
 
+struct ShowArguments {
+  std::string set;
+  std::string page;  // empty: NAME.html in the current directory
+  bool table_only = false;
+};
+
 namespace fs = std::filesystem;
 
 constexpr double wall_thickness = 0.335;    // nm, of the published section
@@ -265,12 +271,11 @@ std::string calibration_page(const ParameterSet& set) {
   std::string html = page_head(set.name) + page_mark +
                      "\n<body>\n<main>\n<p class=\"kicker\">Ropewalk: a parameter set</p>\n<h1>" +
                      escape_markup(set.name) + "</h1>\n";
-  html +=
-      paragraph(fmt::format("{}: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², {} {:.5g} nm.",
-                            set.filament ? "A filament" : "The " + tube_name(set) + " tube",
-                            set.bond.stretch * units::eV_in_nN_nm,
-                            set.bond.bend * units::eV_in_nN_nm, set.bond.twist * units::eV_in_nN_nm,
-                            set.filament ? "contact radius" : "radius", set.radius));
+  html += paragraph(fmt::format("{}: EA {:.5g} nN, EI {:.5g} nN nm², GJ {:.5g} nN nm², {} {:.5g} nm.",
+                                set.filament ? "A filament" : "The " + tube_name(set) + " tube",
+                                set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
+                                set.bond.twist * units::eV_in_nN_nm, set.filament ? "contact radius" : "radius",
+                                set.radius));
   html += paragraph("<b>" + escape_markup(grade_of(set).words()) + "</b>");
   html += heading("Stretch, twist and bend") + elastic_part(set, figures);
   html += heading("Contact") + contact_part(set, figures);
@@ -279,6 +284,8 @@ std::string calibration_page(const ParameterSet& set) {
   html += heading("Where it comes from") + provenance_part(set);
   return html + "</main>\n</body>\n</html>\n";
 }
+
+namespace {
 
 int show_command(const ShowArguments& a) {
   const ParameterSet set = read_parameters(find_parameters(a.set, "", {"", 0, "set"}));
@@ -292,6 +299,17 @@ int show_command(const ShowArguments& a) {
   write_file_atomically(page, calibration_page(set));
   fmt::print("\nPage: {}\n", page);
   return 0;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ShowArguments>();
+  CLI::App* c = app.add_subcommand("show", "The table of a set, and a page with its plots");
+  c->add_option("set", a->set, "Parameter set: a file, or the name of a shipped one")->required();
+  c->add_option("--page", a->page, "Where the page goes [default: NAME.html]");
+  c->add_flag("--table", a->table_only, "The table alone");
+  c->callback([a, &program] { program.code = show_command(*a); });
 }
 
 }  // namespace ropewalk::calibrate

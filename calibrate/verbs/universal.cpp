@@ -9,6 +9,14 @@
 namespace ropewalk::calibrate {
 namespace {
 
+struct UniversalArguments {
+  std::string lj = "2.84e-3,0.34";
+  double lj_cutoff = 1.2;
+  std::string out;  // empty: the shipped file
+  bool force = false;
+  std::string command;
+};
+
 // Pairs of equal and unequal radii over the range of the law.
 std::vector<std::pair<double, double>> radii_to_fit() {
   const std::vector<double> radii = {0.3, 0.35, 0.42, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.4};
@@ -18,8 +26,6 @@ std::vector<std::pair<double, double>> radii_to_fit() {
     for (std::size_t j = i + 3; j < radii.size(); j += 3) pairs.emplace_back(radii[i], radii[j]);
   return pairs;
 }
-
-}  // namespace
 
 int universal_command(const UniversalArguments& a) {
   const AtomLaw law = parse_atom_law(a.lj, a.lj_cutoff);
@@ -35,6 +41,18 @@ int universal_command(const UniversalArguments& a) {
   write_file_atomically(out, universal_file(fit, a.command));
   fmt::print("largest error {:.2e} of the well; written to {}\n", fit.error, out);
   return 0;
+}
+
+}  // namespace
+
+void add_universal(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<UniversalArguments>();
+  a->command = program.command;
+  CLI::App* c = app.add_subcommand("universal", "Fit one contact law for all radii (minutes)");
+  add_law(*c, a->lj, a->lj_cutoff);
+  c->add_option("--out", a->out, "File [default: the shipped one]");
+  c->add_flag("--force", a->force, "Replace an existing file");
+  c->callback([a, &program] { program.code = universal_command(*a); });
 }
 
 }  // namespace ropewalk::calibrate

@@ -1,9 +1,10 @@
-// The verbs of `ropewalk calibrate`. Each returns the exit code.
+// What the verbs of `ropewalk calibrate` share. Each verb is a file, with its options; main.cpp names it.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "cli/command_line.hpp"
 #include "io/removal.hpp"
 #include "verbs/calibration.hpp"
 
@@ -28,15 +29,6 @@ struct CalibrateArguments {
 };
 int calibrate_command(const CalibrateArguments& arguments);
 
-struct UniversalArguments {
-  std::string lj = "2.84e-3,0.34";
-  double lj_cutoff = 1.2;
-  std::string out;  // empty: the shipped file
-  bool force = false;
-  std::string command;
-};
-int universal_command(const UniversalArguments& arguments);
-
 struct FitArguments {
   std::string data, settings, out;
   bool json = false;
@@ -44,20 +36,6 @@ struct FitArguments {
   std::string command;
 };
 int fit_command(const FitArguments& arguments);
-
-struct ShowArguments {
-  std::string set;
-  std::string page;  // empty: NAME.html in the current directory
-  bool table_only = false;
-};
-int show_command(const ShowArguments& arguments);
-
-struct CheckShippedArguments {
-  std::string set = "cnt-5-5-tersoff";
-  bool all = false;
-  double tolerance = 0.002;  // relative
-};
-int check_shipped_command(const CheckShippedArguments& arguments);
 
 struct FrictionArguments {
   std::string first, second;  // sets; second empty: like the first
@@ -73,27 +51,10 @@ struct FrictionArguments {
 };
 int friction_command(const FrictionArguments& arguments);
 
-struct PullArguments {
-  std::string set;
-  std::string out;   // empty: NAME.toml in the current directory
-  std::string keep;  // empty: LAMMPS's files are removed at the end
-  bool force = false;
-  std::string command;
-};
-int pull_command(const PullArguments& arguments);
-
-struct FluctuationsArguments {
-  std::string run;         // its directory
-  double temperature = 0;  // K; 0: that of the run's thermostat
-  double after = 0;        // ps, which are left out
-  std::string against;     // set to compare with; empty: the run's
-  std::string out;         // set to write; empty: none
-  bool json = false, force = false;
-  std::string command;
-};
-int fluctuations_command(const FluctuationsArguments& arguments);
-
 // --- Shared by the verbs ---
+
+// The options --lj and --lj-cutoff.
+void add_law(CLI::App& app, std::string& lj, double& cutoff);
 
 // On Ctrl-C and TERM the LAMMPS child is ended first and temporary files are removed. interrupted_by() is the
 // signal, or 0.

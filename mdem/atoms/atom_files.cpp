@@ -457,7 +457,7 @@ class XyzReader : public Reader {
   bool states_time() const override { return states_time_; }
 
  private:
-  // Of key="..." or key=...; empty: the head has no such key.
+  // The value of key="..." or key=...; empty: the head has no such key.
   static std::string value(const std::string& head, const std::string& key) {
     for (std::size_t at = head.find(key + "="); at != std::string::npos; at = head.find(key + "=", at + 1)) {
       if (at > 0 && head[at - 1] != ' ') continue;

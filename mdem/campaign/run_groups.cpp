@@ -148,7 +148,7 @@ LoadTestGroup tensile_of(const RunGroup& group) {
 }
 
 LoadTestGroup torsion_of(const RunGroup& group) {
-  return tests_of(group, torsion_kind(), "compare runs that twist a rope, see rotation_deg and torque_upper_nN_nm",
+  return tests_of(group, torsion_kind(), "compare runs that twist a rope, see rotation_deg and torque_nN_nm",
                   [](const RunDirectory& run) { return torsion_test(read_log(run.log()), results_of(run)); });
 }
 

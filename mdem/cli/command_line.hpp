@@ -17,10 +17,22 @@ namespace ropewalk {
 // The fault in one line, with the nearest verb or option where one was mistyped. `program` as it is typed.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
 
+// Makes --help no wider than a terminal. Call it before verbs are added: they take the setting over.
+void keep_help_within_width(CLI::App& app);
+
 // The values that an option takes; the error names them.
 CLI::Validator number_within(const Bounds& bounds);
 constexpr int unbounded = std::numeric_limits<int>::max();
 CLI::Validator whole_number(int least, int most = unbounded);
+
+// What the verbs of a program know, and how they end it. Each verb is a file with its options, one row each in
+// add_VERB(app, program), and what it does. Help, man page, completions and the site's page of commands are written from
+// the rows.
+struct Program {
+  char** argv;          // words of the command line
+  std::string command;  // the same as typed in a shell, for verbs that write it into a file
+  int code = 0;         // exit code of the verb that was called
+};
 
 // How a program describes itself.
 struct Description {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "exchange/atoms_of_state.hpp"
 #include "exchange/step_again.hpp"
 #include "io/files.hpp"
@@ -17,9 +17,26 @@
 #include "model/error.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
+#include "scene/single_state.hpp"
 
 namespace ropewalk {
 namespace {
+
+struct AtomsArguments {
+  std::string path;         // directory of a run, or a state file
+  SingleState state;        // a state file, but for its source
+  std::string out;          // .data, .xyz or .extxyz
+  long frame = -1;          // of a run; from the end if negative
+  std::string at;           // limit, whose place and time are wanted instead
+  double length = 12;       // nm, of that place
+  bool step_again = false;  // to that moment, however long it takes
+  std::string tubes;        // "0-18,20"; empty: all
+  std::string between;      // "20,40" nm along each tube; empty: all
+  std::string potential;    // empty: that of the sets
+  bool relax = false;
+  bool force = false;
+  bool json = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -156,8 +173,6 @@ nlohmann::ordered_json as_json(const std::vector<PartComparison>& parts) {
   return list;
 }
 
-}  // namespace
-
 int atoms_command(const AtomsArguments& a) {
   const AtomFormat format = atom_format_of(a.out);
   refuse_what_does_not_fit(a, format);
@@ -168,7 +183,7 @@ int atoms_command(const AtomsArguments& a) {
   AtomSelection selection;
   selection.tubes = tubes_of(a.tubes);
   set_between(a.between, selection);
-  const AtomicState s = !a.at.empty()   ? state_at_place(a, selection)
+  const AtomicState s = !a.at.empty()    ? state_at_place(a, selection)
                         : is_run(a.path) ? state_of_frame({a.path}, a.frame)
                                          : state_of_file(with_source(a), a.path);
   const std::vector<TubePart> parts = selected_parts(s, selection);
@@ -197,6 +212,50 @@ int atoms_command(const AtomsArguments& a) {
   else
     print_comparison(found);
   return 0;
+}
+
+}  // namespace
+
+void add_atoms(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<AtomsArguments>();
+  CLI::App* c = app.add_subcommand(
+      "atoms", "Elements as atoms: a frame of a run, or a state, as a LAMMPS data file or extended XYZ");
+  c->add_option("path", a->path, "Directory of a run, or a state file (CSV)")->required();
+  c->add_option(
+       "-o", a->out,
+       "File to write: .data for LAMMPS, .xyz or .extxyz. Beside it: which atoms are of which element, and an "
+       "input of LAMMPS that relaxes them")
+      ->required();
+  CLI::Option* frame =
+      c->add_option("--frame", a->frame, "Frame of a run, from 0; -1 is the last")->capture_default_str();
+  CLI::Option* at =
+      c->add_option("--at", a->at,
+                    "A limit that the run has passed: the place where it did so first. The run is stepped again to "
+                    "that moment where that takes less than a minute; else the last frame before it is taken")
+          ->excludes(frame);
+  c->add_flag("--step-again", a->step_again, "With --at: step the run again, however long it takes")->needs(at);
+  c->add_option("--length", a->length, "With --at: diameter of that place, nm")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(1, 1000)))
+      ->needs(at);
+  c->add_option("--tubes", a->tubes, "These tubes alone, from 0: 0-18,20");
+  c->add_option("--between", a->between, "This stretch of each tube alone, nm from its first end at rest: 20,40");
+  c->add_flag("--relax", a->relax,
+              "Have LAMMPS minimise the energy with the ends held, and print it beside that of the model");
+  c->add_option("--potential", a->potential,
+                "tersoff, airebo, rebo, lcbop, or a file of pair_style and pair_coeff lines [default: the set's]");
+  c->add_option("--parameters", a->state.parameters,
+                "For a state file: its parameter set; several, separated by commas, for tube types")
+      ->delimiter(',');
+  c->add_option("--tube-types", a->state.tube_types,
+                "For a state file: number of the parameter set of each tube, from 0 [default: all 0]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", a->state.element_length,
+                "For a state file: length of an element [default: what the file says, else the set's]")
+      ->check(number_within(Bounds::range(0.05, 50)));
+  c->add_flag("--json", a->json, "With --relax: JSON");
+  c->add_flag("--force", a->force, "Replace existing files");
+  c->callback([a, &program] { program.code = atoms_command(*a); });
 }
 
 }  // namespace ropewalk

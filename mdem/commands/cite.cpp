@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/manifest.hpp"
 #include "run/run_directory.hpp"
 
@@ -28,7 +28,7 @@ std::string key_of(const std::string& name) {
   return key;
 }
 
-// Of CITATION.cff.
+// The references of CITATION.cff.
 constexpr const char* model =
     "@article{mdem-twist,\n"
     "  title = {Twisting carbon nanotube ropes with the mesoscopic distinct element method: geometry, packing, and "
@@ -52,8 +52,6 @@ void cite_set(const ParameterSet& set) {
              set.doi.empty() ? "" : ", doi = {" + set.doi + "}");
 }
 
-}  // namespace
-
 int cite_command(const std::string& directory) {
   const RunDirectory dir{directory};
   refuse_strange_files(dir);
@@ -71,6 +69,15 @@ int cite_command(const std::string& directory) {
     fmt::print("\n@misc{{{},\n  title = {{{} of Ropewalk, measured from atoms}}\n}}\n", key_of(stem), tex(stem));
   }
   return 0;
+}
+
+}  // namespace
+
+void add_cite(CLI::App& app, Program& program) {
+  const auto run = std::make_shared<std::string>();
+  CLI::App* c = app.add_subcommand("cite", "Name what a paper that shows a run should cite, as BibTeX");
+  c->add_option("dir", *run, "Directory of the run")->required();
+  c->callback([run, &program] { program.code = cite_command(*run); });
 }
 
 }  // namespace ropewalk

@@ -1,11 +1,10 @@
-// Scripts that run a scene, or the points of a campaign, on a cluster.
+// Scripts that run the points of a campaign on a cluster.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "campaign/campaign.hpp"
-#include "commands/commands.hpp"
 
 namespace ropewalk {
 
@@ -20,9 +19,5 @@ struct ClusterScripts {
 int write_script(const ClusterScripts& scripts, const std::string& verb, const std::string& file,
                  const CampaignDirectory& dir, const std::vector<SweepPoint>& points, const std::string& options,
                  int jobs, bool force);
-
-// Writes a job of SLURM that runs the scene of `run` in pieces of its wall time: a job that ends with exit code 6
-// submits the next one, which resumes. Returns the exit code. Throws InputError.
-int write_run_script(const RunArguments& run);
 
 }  // namespace ropewalk

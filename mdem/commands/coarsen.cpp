@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
 #include "model/error.hpp"
@@ -15,6 +15,18 @@
 
 namespace ropewalk {
 namespace {
+
+struct CoarsenArguments {
+  std::vector<std::string> files;
+  std::string out;                      // directory of the run to make
+  std::string state;                    // CSV file to write instead, of one frame
+  std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
+  double element_length = 0;            // nm; 0: the set's
+  double time_step_fs = 1;              // of MD steps in dumps that state no time
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
 
 nlohmann::ordered_json as_json(const Coarsening& coarse) {
   auto list = nlohmann::ordered_json::array();
@@ -45,8 +57,6 @@ void tell_tubes(const Coarsening& coarse) {
   if (coarse.loose() > 0) fmt::print("{} carbon atoms in no tube\n", coarse.loose());
   if (coarse.foreign() > 0) fmt::print("{} atoms of other species\n", coarse.foreign());
 }
-
-}  // namespace
 
 int coarsen_command(const CoarsenArguments& a) {
   if (a.out.empty() && a.state.empty())
@@ -80,6 +90,35 @@ int coarsen_command(const CoarsenArguments& a) {
              run.frames == 1 ? "" : "s", run.time, a.out);
   if (!run.passed.empty()) fmt::print(to, "Limits passed: {}\n", run.passed);
   return 0;
+}
+
+}  // namespace
+
+void add_coarsen(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<CoarsenArguments>();
+  CLI::App* c = app.add_subcommand(
+      "coarsen", "Atoms as elements: tubes found in LAMMPS data files, dumps or XYZ become a run, or a state");
+  c->add_option("files", a->files,
+                "Files of one simulation: LAMMPS data, LAMMPS text dumps, XYZ or extended XYZ; lengths in Angstrom")
+      ->required()
+      ->check(CLI::ExistingFile);
+  CLI::Option* out =
+      c->add_option("-o,--out", a->out, "Directory of the run to make, for observe, report, view and compare");
+  c->add_option("--state", a->state, "Write the last frame as a state (CSV), from which a scene can start")
+      ->excludes(out);
+  c->add_option("--parameters", a->parameters,
+                "Parameter sets, one for each (n,m) [default: shipped ones of what is found]")
+      ->delimiter(',');
+  c->add_option("--element-length-nm", a->element_length,
+                "Length of an element [default: the set's, of the first kind of tube]")
+      ->check(number_within(Bounds::range(0.3, 50)));
+  c->add_option("--time-step-fs", a->time_step_fs, "Time step of the MD, for dumps without ITEM: TIME")
+      ->capture_default_str()
+      ->check(number_within(Bounds::positive(1e6)));
+  c->add_flag("--json", a->json, "What was found, as JSON");
+  c->add_flag("--force", a->force, "Replace an earlier run in --out, or the file");
+  c->add_flag("--quiet", a->quiet, "Do not list the tubes");
+  c->callback([a, &program] { program.code = coarsen_command(*a); });
 }
 
 }  // namespace ropewalk

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/draft.hpp"
 #include "io/files.hpp"
 #include "io/frames/frames.hpp"
@@ -15,6 +15,15 @@
 
 namespace ropewalk {
 namespace {
+
+struct ConvertArguments {
+  std::string dir;
+  std::string out;  // .gsd, .lammpstrj or .pvd
+  double from_ps = 0;
+  std::optional<double> to_ps;
+  long every = 1;  // frames
+  bool force = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -82,8 +91,6 @@ std::unique_ptr<Output> output_for(const std::string& path, bool force) {
                    "choose the format by the end of the name");
 }
 
-}  // namespace
-
 int convert_command(const ConvertArguments& a) {
   const RunDirectory dir{a.dir};
   const std::string from = dir.frames();
@@ -108,6 +115,22 @@ int convert_command(const ConvertArguments& a) {
   out->end();
   fmt::print("{} written, {} frame{}\n", a.out, written, written == 1 ? "" : "s");
   return 0;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ConvertArguments>();
+  CLI::App* c = app.add_subcommand("convert", "Frames of a run in another format: GSD, LAMMPS dump, ParaView");
+  c->add_option("dir", a->dir, "Directory of the run")->required();
+  c->add_option("file", a->out,
+                "File to write: .gsd (OVITO, MDAnalysis), .lammpstrj (LAMMPS, ASE) or .pvd (ParaView)")
+      ->required();
+  c->add_option("--from-ps", a->from_ps, "Leave out what is earlier")->capture_default_str();
+  c->add_option("--to-ps", a->to_ps, "Leave out what is later");
+  c->add_option("--every", a->every, "Every Nth frame")->check(whole_number(1))->capture_default_str();
+  c->add_flag("--force", a->force, "Replace an existing file");
+  c->callback([a, &program] { program.code = convert_command(*a); });
 }
 
 }  // namespace ropewalk

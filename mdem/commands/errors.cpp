@@ -14,7 +14,7 @@
 #include "campaign/error_runs.hpp"
 #include "campaign/numeric_runs.hpp"
 #include "campaign/repeated_run.hpp"
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/error_exit.hpp"
 #include "io/files.hpp"
 #include "io/processes.hpp"
@@ -23,9 +23,20 @@
 #include "run/directory_lock.hpp"
 #include "run/results.hpp"
 #include "run/tell.hpp"
+#include "scene/missing_forces.hpp"
 
 namespace ropewalk {
 namespace {
+
+struct ErrorsArguments {
+  std::string dir;
+  bool numerics = false;  // with elements, time step, rate and other starts
+  double mean_ps = 0;     // numerics: of means over so much time; 0: of the last row
+  int jobs = 0;           // runs at a time; 0: one for each core
+  bool again = false;
+  bool json = false;
+  bool quiet = false;
+};
 
 // No digit of a value beyond two of the error of its fit, or of what it still moves by.
 std::string value_text(double value, double error) {
@@ -222,6 +233,7 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    refuse_missing_forces(scene.missing_forces, dir.path);
     if (manifest.status == "taken from atoms")
       throw InputError({dir.path, 0, ""}, "was not run: its elements were taken from atoms",
                        "run a scene that begins with its final.csv");
@@ -283,8 +295,6 @@ NumericErrors write_numeric_errors(const FinishedRun& run, NumericRuns what, Run
   return errors;
 }
 
-}  // namespace
-
 int errors_command(const ErrorsArguments& a) {
   const FinishedRun run(a.dir);
   const DirectoryLock lock(run.dir.path);  // two at a time would each refuse the runs of the other
@@ -301,11 +311,12 @@ int errors_command(const ErrorsArguments& a) {
     for (const bool plus : {true, false})
       if (const std::string& name = plus ? source.error.plus : source.error.minus; !name.empty())
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
-  const RunInputs as_it_was = inputs_of(run.dir, run.scene);
+  const RunInputs as_it_was = inputs_of(run.dir, run.scene, run.prepared);
   for (const NumericRun& r : plan.runs)
     repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
+      if (changed.until_ps > 0) changed.until_ps *= r.times;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);
     });
   if (!a.quiet) repeats.say_cost(run.manifest.wall_seconds * run.manifest.threads);
@@ -334,6 +345,35 @@ int errors_command(const ErrorsArguments& a) {
                          run.dir.file("errors-statistics.csv"));
   fmt::print("Errors of every row: {}; bands in {}\n", files, run.dir.report());
   return 0;
+}
+
+// Threads of each of so many runs at a time; 0 runs: one for each core.
+int threads_beside(int jobs) { return jobs > 0 ? std::max(1, omp_get_num_procs() / jobs) : 1; }
+
+}  // namespace
+
+void add_errors(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ErrorsArguments>();
+  CLI::App* c = app.add_subcommand("errors",
+                                   "Error bars of a finished run, from the standard errors of its parameter sets, "
+                                   "friction files and scene numbers; it "
+                                   "repeats the run");
+  c->add_option("dir", a->dir, "Directory of the run")->required();
+  CLI::Option* numerics = c->add_flag("--numerics", a->numerics,
+                                      "Add the numerical errors: repeat the run with half the element length, half "
+                                      "the time step and half the rate, and "
+                                      "from other random starts");
+  c->add_option("--mean", a->mean_ps, "Errors of means over the last so many ps instead of the last row")
+      ->check(number_within(Bounds::positive()))
+      ->needs(numerics);
+  c->add_option("-j,--jobs", a->jobs, "Runs at a time [default: one for each core]")->check(whole_number(1));
+  c->add_flag("--again", a->again, "Repeat finished runs as well");
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--quiet", a->quiet, "No progress lines");
+  c->callback([a, &program] {
+    wait_briefly(program.argv, threads_beside(a->jobs));
+    program.code = errors_command(*a);
+  });
 }
 
 }  // namespace ropewalk

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/files.hpp"
 #include "io/mode_table.hpp"
 #include "model/error.hpp"
@@ -19,6 +19,17 @@
 
 namespace ropewalk {
 namespace {
+
+struct ModesArguments {
+  std::string path;  // a scene, or the directory of a run
+  int count = 8;
+  double shift = 50;        // 1/ns
+  bool anyway = false;      // also where it does not rest
+  std::string csv, frame;   // files to write; empty: none
+  double amplitude = 0.02;  // nm, of the frame
+  int threads = 0;
+  bool force = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -147,8 +158,6 @@ State along(const State& rest, const Mode& mode, double amplitude) {
   return moved(rest, amplitude / most * shape, &velocity);
 }
 
-}  // namespace
-
 int modes_command(const ModesArguments& a) {
   use_threads(a.threads);
   refuse_existing(a.csv, "--csv", a.force);
@@ -201,6 +210,36 @@ int modes_command(const ModesArguments& a) {
   if (!a.frame.empty())
     write_file_atomically(a.frame, state_csv(s.topology(), along(s.state(), found.modes.front(), a.amplitude)));
   return 0;
+}
+
+}  // namespace
+
+void add_modes(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ModesArguments>();
+  CLI::App* c =
+      app.add_subcommand("modes", "Small motions that grow out of a state at rest: their rates and what they move");
+  c->add_option("path", a->path,
+                "Directory of a run, whose newest checkpoint counts, or a scene (TOML) at its start")
+      ->required()
+      ->check(CLI::ExistingPath);
+  c->add_option("--count", a->count, "Eigenvalues to find")->capture_default_str()->check(whole_number(1, 200));
+  c->add_option("--shift", a->shift,
+                "Find the motions with growth rates nearest to this one (1/ns); choose it above the largest rate")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1e5));
+  c->add_flag("--anyway", a->anyway, "Also for a state that is not at rest, as if it stood still");
+  c->add_option("--csv", a->csv, "Write the table to this file");
+  c->add_option("--frame", a->frame,
+                "Write the state moved along the leading mode to this file (CSV), from which a scene can start");
+  c->add_option("--amplitude", a->amplitude, "Largest displacement of an element in that state, nm")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-9, 1.0));
+  c->add_option("--threads", a->threads, "Threads [default: all cores]")->check(thread_range());
+  c->add_flag("--force", a->force, "Replace existing files");
+  c->callback([a, &program] {
+    wait_briefly(program.argv, a->threads);
+    program.code = modes_command(*a);
+  });
 }
 
 }  // namespace ropewalk

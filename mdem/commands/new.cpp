@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
 #include "io/toml_table.hpp"
@@ -12,6 +12,14 @@
 
 namespace ropewalk {
 namespace {
+
+struct NewArguments {
+  std::string name;
+  std::string kind = "rope";
+  bool list = false;
+  bool brief = false;  // without the keys that have their defaults
+  bool force = false;
+};
 
 const SceneTemplate& find_template(const std::string& kind) {
   for (const SceneTemplate& t : scene_templates())
@@ -22,8 +30,6 @@ const SceneTemplate& find_template(const std::string& kind) {
   throw InputError({"", 0, "--kind"}, fmt::format("there is no template \"{}\"", printable(kind)),
                    near.empty() ? "see `ropewalk new --list`" : fmt::format("did you mean {}?", near));
 }
-
-}  // namespace
 
 int new_command(const NewArguments& a) {
   if (a.list) {
@@ -42,6 +48,19 @@ int new_command(const NewArguments& a) {
              t.description, t.dissipation.empty() ? "" : t.dissipation + "\n", path, path,
              "runs/" + std::filesystem::path(path).stem().string());
   return 0;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<NewArguments>();
+  CLI::App* c = app.add_subcommand("new", "Write a commented scene to start from");
+  c->add_option("name", a->name, "Name of the scene; NAME.toml is written");
+  c->add_option("--kind", a->kind, "Which template, see --list")->capture_default_str();
+  c->add_flag("--list", a->list, "List the templates");
+  c->add_flag("--short", a->brief, "Only the keys that matter, without those that have their defaults");
+  c->add_flag("--force", a->force, "Overwrite an existing file");
+  c->callback([a, &program] { program.code = new_command(*a); });
 }
 
 }  // namespace ropewalk

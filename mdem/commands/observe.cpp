@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "commands/commands.hpp"
 #include "commands/console_table.hpp"
+#include "commands/verb.hpp"
 #include "io/frames/frames.hpp"
 #include "io/tube_table.hpp"
 #include "model/error.hpp"
@@ -15,6 +15,14 @@
 
 namespace ropewalk {
 namespace {
+
+struct ObserveArguments {
+  std::string dir;
+  double neighbour_radius = -1;  // nm; -1: the scene's
+  bool json = false;
+  bool list = false;   // only the table of observables
+  bool tubes = false;  // every tube of the last frame, as CSV
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -50,8 +58,6 @@ Json as_json(const Measurement& m, const std::vector<Observable>& chosen) {
   return out;
 }
 
-}  // namespace
-
 int observe_command(const ObserveArguments& a) {
   if (a.list) {
     fmt::print("{}", observables_markdown());
@@ -61,6 +67,8 @@ int observe_command(const ObserveArguments& a) {
     throw InputError({"", 0, "dir"}, "is missing", "name the directory of a run, or see `ropewalk observe --list`");
   const RunDirectory dir{a.dir};
   Scene scene = read_run_scene(dir);
+  if (!scene.missing_forces.empty())
+    fmt::print(stderr, "ropewalk: note: The run had forces of one's own, in Python: {}.\n", scene.missing_forces);
   if (a.neighbour_radius > 0) scene.observe.neighbour_radius = a.neighbour_radius;
   const Prepared prepared = prepare(scene);
   const Observer observer = make_observer(scene, prepared);
@@ -93,6 +101,22 @@ int observe_command(const ObserveArguments& a) {
   }
   if (a.json) fmt::print("{}\n", all.dump(1));
   return 0;
+}
+
+}  // namespace
+
+void add_observe(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ObserveArguments>();
+  CLI::App* c = app.add_subcommand("observe", "Measure the stored frames of a run: twist, packing, shape");
+  c->add_option("dir", a->dir, "Directory of the run");
+  c->add_flag("--list", a->list, "List the observables: name, unit, meaning (Markdown)");
+  c->add_option("--neighbour-radius", a->neighbour_radius,
+                "Tubes closer than this are neighbours (nm) [default: the scene's]")
+      ->check(number_within(Bounds::positive()));
+  c->add_flag("--json", a->json, "JSON, with radius profile and centre line");
+  c->add_flag("--tubes", a->tubes,
+              "Every tube of the last frame, as CSV: tension, twist, curvature, slip, pressure");
+  c->callback([a, &program] { program.code = observe_command(*a); });
 }
 
 }  // namespace ropewalk

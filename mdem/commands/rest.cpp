@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "campaign/static_rest.hpp"
 #include "campaign/sweep_runs.hpp"
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/file_group.hpp"
 #include "io/files.hpp"
 #include "io/stop_signals.hpp"
@@ -18,10 +19,21 @@
 #include "run/results.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/scene_toml.hpp"
-#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
+
+struct RestArguments {
+  std::string scene;
+  std::string out;                  // empty: runs/NAME-rest
+  std::optional<double> viscosity;  // eV ps/nm^3
+  double tolerance = 0.02;          // part of the geometric twist, within which both sides agree
+  int jobs = 0;                     // 0: one for each core
+  bool by_statics = false;          // by Newton's method, without runs
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -62,7 +74,6 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
-// Solves for both states in this process, since each takes some seconds.
 int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& p, const RestTheory& theory,
                     double length, const std::string& name) {
   if (a.viscosity)
@@ -71,22 +82,16 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
   const std::string out = a.out.empty() ? "runs/" + name + "-static-rest" : a.out, last = out + "/static-rest.json";
   if (!a.force && fs::exists(last))
     throw InputError({out, 0, "--out"}, "holds static-rest.json", "choose another name, or give --force");
-  use_threads(a.jobs);
-  listen_to_stop_signals();
   const Scene plain = static_scene(scene);
-  const auto goes_on = [] { return stop_signal == 0; };
   std::vector<StaticRest> rests;
   const std::array<double, 2> starts = rest_starts(p, theory);
   for (std::size_t side = 0; side < 2; ++side) {
     Scene wound = plain;
     wound.start.turn = starts[side];
-    rests.push_back(static_rest(wound, side == 0 ? "below" : "above", goes_on));
-    if (stop_signal) return tell_stop();
+    rests.push_back(static_rest(wound, side == 0 ? "below" : "above"));
     const std::string from = rests.back().from;
-    for (const State& begin : along_growing_motion(wound, rests.back())) {
-      rests.push_back(static_rest(wound, from + ", growing", goes_on, &begin));
-      if (stop_signal) return tell_stop();
-    }
+    for (const State& begin : along_growing_motion(wound, rests.back()))
+      rests.push_back(static_rest(wound, from + ", growing", &begin));
   }
   const std::string words = static_rest_words(rests, a.tolerance), json = static_rest_json(rests, words);
   fs::create_directories(out);
@@ -100,8 +105,6 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
   return std::all_of(rests.begin(), rests.end(), [](const StaticRest& r) { return r.at_rest; }) ? 0 : 4;
 }
 
-}  // namespace
-
 int rest_command(const RestArguments& a) {
   Scene scene = read_scene(a.scene);
   if (scene.start.turn != 0)
@@ -110,7 +113,7 @@ int rest_command(const RestArguments& a) {
   const RestTheory theory = rest_theory(scene, p);
   const double length = p.topology.length_of(0) * p.topology.longest_element();
   const std::string name = fs::path(a.scene).stem().string();
-  if (a.by_statics) return rest_by_statics(a, scene, p, theory, length, name);
+  if (a.by_statics) return solve_here(a.jobs, [&] { return rest_by_statics(a, scene, p, theory, length, name); });
   const CampaignDirectory dir{a.out.empty() ? "runs/" + name + "-rest" : a.out};
   scene.path = fs::absolute(a.scene).string();
   const Sweep sweep = sweep_of_text(rest_sweep(scene, p, theory, viscosity_of(a, scene)), dir.sweep());
@@ -146,6 +149,31 @@ int rest_command(const RestArguments& a) {
   fmt::print("{}\n{}Numbers: {}/rest.csv, rest.json; runs: {}/points\n", verdict.words,
              quoted ? left_out_of_rest() + "\n" : "", dir.path, dir.path);
   return 0;
+}
+
+}  // namespace
+
+void add_rest(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<RestArguments>();
+  CLI::App* c = app.add_subcommand(
+      "rest", "Where a rope under a moment comes to rest: approached from below and from above, beside theory");
+  c->add_option("scene", a->scene, "Scene (TOML): a [rope] with [twist]")->required();
+  c->add_option("--out", a->out, "Directory of both runs; the same command goes on [default: runs/NAME-rest]");
+  c->add_option("--viscosity", a->viscosity,
+                "Contact viscosity (eV ps/nm^3) [default: the scene's, or a tenth of the default]")
+      ->check(CLI::NonNegativeNumber);
+  c->add_option("--tolerance", a->tolerance,
+                "Relative tolerance of the twist: of a side, to be at rest, and of both, to agree")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-4, 0.5));
+  c->add_option("-j,--jobs", a->jobs, "Runs at a time [default: one for each core]")->check(thread_range());
+  c->add_flag(
+      "--static", a->by_statics,
+      "By Newton's method, without runs: the equilibrium states without friction, and whether they are stable");
+  c->add_flag("--force", a->force, "Replace runs of another scene");
+  c->add_flag("--json", a->json, "JSON");
+  c->add_flag("--quiet", a->quiet, "No progress");
+  c->callback([a, &program] { program.code = rest_command(*a); });
 }
 
 }  // namespace ropewalk

@@ -9,8 +9,8 @@
 #include "campaign/point_runs.hpp"
 #include "campaign/sweep_runs.hpp"
 #include "commands/cluster_scripts.hpp"
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/clocks.hpp"
 #include "io/error_exit.hpp"
 #include "io/files.hpp"
@@ -21,6 +21,19 @@
 
 namespace ropewalk {
 namespace {
+
+struct SweepArguments {
+  std::string file;
+  std::string out;                // empty: FILE without .toml
+  std::vector<std::string> only;  // names of points, or their numbers from 1; empty: all
+  std::string slurm, snakemake;   // file to write instead
+  std::string on_limit = "warn";  // or "stop"
+  int jobs = 0;                   // runs at a time; 0: one for each core
+  bool dry_run = false;
+  bool again = false;  // failed points as well
+  bool force = false;
+  bool quiet = false;
+};
 
 using Stage = PointProgress::Stage;
 
@@ -91,8 +104,6 @@ int summary(const CampaignDirectory& dir, const std::vector<SweepPoint>& points,
   return misses.empty() ? 0 : not_as_expected;
 }
 
-}  // namespace
-
 int sweep_command(const SweepArguments& a) {
   const Sweep sweep = read_sweep(a.file);
   if (sweep.threshold)
@@ -123,6 +134,30 @@ int sweep_command(const SweepArguments& a) {
   if (a.only.empty()) write_file_atomically(dir.table(), gathered_csv(dir, sweep, all, {}));
   progress.clear_line();
   return summary(dir, points, a.only.empty());
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<SweepArguments>();
+  CLI::App* c =
+      app.add_subcommand("sweep", "Run a scene for many values of its keys, each point in a directory of its own");
+  c->add_option("file", a->file, "Sweep (TOML): scene = \"rope.toml\", then [vary] with rope.tubes = [7, 19]")
+      ->required();
+  c->add_option("--out", a->out, "Directory of the campaign, where the same command goes on [default: FILE]");
+  c->add_option("-j,--jobs", a->jobs, "Runs at a time, each on one core [default: all cores]")
+      ->check(thread_range());
+  c->add_flag("--dry-run", a->dry_run, "Only list the points and what they cost");
+  c->add_option("--only", a->only, "Points by name, or by number from 1")->delimiter(',');
+  c->add_flag("--again", a->again, "Run failed points once more");
+  c->add_option("--on-limit", a->on_limit, "What points do where a limit of [limits] is passed: warn or stop")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"warn", "stop"}));
+  c->add_option("--slurm", a->slurm, "Only write a SLURM array with a job for each point to this file");
+  c->add_option("--snakemake", a->snakemake, "Only write a Snakemake file to this file");
+  c->add_flag("--force", a->force, "Replace points that were run with another scene");
+  c->add_flag("--quiet", a->quiet, "No progress line");
+  c->callback([a, &program] { program.code = sweep_command(*a); });
 }
 
 }  // namespace ropewalk

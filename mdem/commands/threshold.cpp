@@ -9,8 +9,8 @@
 #include "campaign/static_threshold.hpp"
 #include "campaign/threshold_search.hpp"
 #include "commands/cluster_scripts.hpp"
-#include "commands/commands.hpp"
 #include "commands/sweep_progress.hpp"
+#include "commands/verb.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
@@ -18,10 +18,22 @@
 #include "model/error.hpp"
 #include "run/tell.hpp"
 #include "run/wall_time.hpp"
-#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
+
+struct ThresholdArguments {
+  std::string file;
+  std::string out;                // empty: FILE without .toml
+  std::string known;              // trials.csv of an earlier search
+  std::vector<std::string> only;  // numbers from 1 or names of points; empty: all
+  std::string slurm, snakemake;   // write this file and run nothing
+  int jobs = 0;                   // points at a time; 0: one for each core
+  bool theory = false;            // run nothing
+  bool by_statics = false;        // by Newton's method, without runs
+  bool force = false;
+  bool quiet = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -52,7 +64,6 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
 }
 
-// In this process: a state of rest costs some seconds.
 int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const CampaignDirectory& dir) {
   for (const auto& [given, option] : {std::pair{!a.known.empty(), "--known"},
                                       {!a.slurm.empty(), "--slurm"},
@@ -60,16 +71,13 @@ int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const
                                       {a.theory, "--theory"}})
     if (given)
       throw InputError({"", 0, option}, "is for runs, and --static makes none", "leave one of the two out");
-  use_threads(a.jobs);
-  listen_to_stop_signals();
   const std::string file = dir.path + "-static.csv";  // beside the directory of runs
   if (!a.force && fs::exists(file))
     throw InputError({file, 0, "--out"}, "exists", "choose another --out, or give --force");
   const std::vector<SweepPoint> all = points_of(sweep);
   std::vector<StaticThreshold> found;
   for (const SweepPoint& point : chosen_points(all, a.only)) {
-    found.push_back(static_threshold(sweep, point, [] { return stop_signal == 0; }));
-    if (stop_signal) return tell_stop();
+    found.push_back(static_threshold(sweep, point));
     const StaticThreshold& t = found.back();
     fmt::print("{:<40} {:<18} theory {}{}\n", t.point,
                t.found() ? fmt::format("{:.4g} ± {:.2g}", t.value(), t.error()) : std::string("not found"),
@@ -82,8 +90,6 @@ int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const
   return 0;
 }
 
-}  // namespace
-
 int threshold_command(const ThresholdArguments& a) {
   Sweep sweep = read_sweep(a.file);
   if (!sweep.threshold)
@@ -95,7 +101,7 @@ int threshold_command(const ThresholdArguments& a) {
   if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
     tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
-  if (a.by_statics) return thresholds_by_statics(a, sweep, dir);
+  if (a.by_statics) return solve_here(a.jobs, [&] { return thresholds_by_statics(a, sweep, dir); });
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   ThresholdSearch search(std::move(sweep), dir, a.only);
   if (const ClusterScripts scripts{a.slurm, a.snakemake}; scripts.any())
@@ -124,6 +130,33 @@ int threshold_command(const ThresholdArguments& a) {
   if (a.only.empty()) print_results(dir, search.results());
   for (const std::string& name : failed) tell_not_ended(dir, name);
   return failed.empty() ? 0 : 3;
+}
+
+}  // namespace
+
+void add_threshold(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ThresholdArguments>();
+  CLI::App* c = app.add_subcommand(
+      "threshold",
+      "The critical value of a key at each point of a sweep, by bisection, beside theory: a phase diagram");
+  c->add_option("file", a->file, "Sweep (TOML) with [threshold]: key, from, to, and column and above, or shape")
+      ->required();
+  c->add_option("--out", a->out, "Directory of the campaign, where the same command goes on [default: FILE]");
+  c->add_option("-j,--jobs", a->jobs, "Points at a time, each on one core [default: all cores]")
+      ->check(thread_range());
+  c->add_option("--known", a->known,
+                "trials.csv of an earlier search: its trials of the same scenes are not run again")
+      ->check(CLI::ExistingFile);
+  c->add_option("--only", a->only, "Numbers from 1 or names of the points to search")->delimiter(',');
+  c->add_option("--slurm", a->slurm, "Only write a SLURM array with a job for each point to this file");
+  c->add_option("--snakemake", a->snakemake, "Only write a Snakemake file to this file");
+  c->add_flag("--theory", a->theory, "Run nothing: tables and page of theory and of the runs that are there");
+  c->add_flag(
+      "--static", a->by_statics,
+      "Run nothing: find, by statics, between which values the equilibrium without friction loses its stability");
+  c->add_flag("--force", a->force, "Replace runs of another scene");
+  c->add_flag("--quiet", a->quiet, "No progress");
+  c->callback([a, &program] { program.code = threshold_command(*a); });
 }
 
 }  // namespace ropewalk

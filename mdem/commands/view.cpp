@@ -3,13 +3,27 @@
 
 #include <filesystem>
 
-#include "commands/commands.hpp"
+#include "commands/verb.hpp"
 #include "io/files.hpp"
 #include "model/error.hpp"
 #include "run/pages/run_movie.hpp"
 #include "run/pages/view_input.hpp"
 
 namespace ropewalk {
+namespace {
+
+struct ViewArguments {
+  std::string dir;
+  std::string out;            // the page; empty: DIR/view.html
+  int frames = 100;           // at most
+  double megabytes = 15;      // largest size of the page
+  std::string movie;          // .webm or .mp4 to write instead
+  std::string from = "side";  // view of the movie, as in PictureArguments
+  std::string colour;         // colours of the movie, as in PictureArguments
+  double fps = 15;            // frames per second of the movie
+  int width = 1280;           // pixels, of the movie
+  bool force = false;
+};
 
 int view_command(const ViewArguments& a) {
   if (!a.movie.empty()) {
@@ -34,6 +48,40 @@ int view_command(const ViewArguments& a) {
   // The report then names the page.
   if (a.out.empty() && std::filesystem::exists(dir.report())) write_report(dir, scene, prepared);
   return 0;
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ViewArguments>();
+  CLI::App* c = app.add_subcommand(
+      "view", "Show a run in space: a page to turn, play and cut through its frames; or a movie");
+  c->add_option("dir", a->dir, "Directory of the run")->required();
+  c->add_option("-o", a->out, "Page to write [default: DIR/view.html]");
+  c->add_option("--frames", a->frames, "At most so many frames, evenly over the run")
+      ->capture_default_str()
+      ->check(whole_number(1, 100000));
+  c->add_option("--megabytes", a->megabytes,
+                "Largest size of the page: numbers are rounded to keep it, then frames are left out")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(1.0, 2000.0)));
+  CLI::Option* movie =
+      c->add_option("--movie", a->movie, "Write a movie of these frames instead: .webm or .mp4, by ffmpeg");
+  c->add_option("--from", a->from,
+                "Movie, seen from: side (the largest deflection in the picture), x, y, z, or AZIMUTH,ELEVATION")
+      ->capture_default_str()
+      ->needs(movie);
+  add_colour(c, a->colour, "Movie: tubes")->needs(movie);
+  c->add_option("--fps", a->fps, "Movie: frames per second")
+      ->capture_default_str()
+      ->check(number_within(Bounds::range(0.1, 120.0)))
+      ->needs(movie);
+  c->add_option("--width", a->width, "Movie: width, pixels")
+      ->capture_default_str()
+      ->check(whole_number(200, 7680))
+      ->needs(movie);
+  c->add_flag("--force", a->force, "Replace the file of -o or --movie");
+  c->callback([a, &program] { program.code = view_command(*a); });
 }
 
 }  // namespace ropewalk

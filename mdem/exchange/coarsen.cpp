@@ -245,7 +245,7 @@ void Coarsening::fit_first() {
                       100 * missing, chirality_name(tube.chirality), tube.centre.x(), tube.centre.y(),
                       tube.centre.z()),
           "such a tube is no chain of elements: minimise it, or take it out");
-    // Of the equal parts of a turn, the one that turns the first element least.
+    // The lattice has equal parts of a turn: take the one that turns the first element least.
     const int g = std::gcd(tube.chirality.n, tube.chirality.m);
     int best = 0;
     double most = -1;

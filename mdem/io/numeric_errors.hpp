@@ -48,7 +48,7 @@ struct WholeError {
   bool bound = false;         // most of them is an upper bound
   int without = 0;            // repeated runs that do not have the result; the error is then not known
   std::string decides;        // what is largest: "statistics", "potential", "elements", "GJ"; empty: nothing is
-  // Of a mean over time; nan: of none. needed_ps: that an error by blocks needs, where the time is too short.
+  // Correlation time of a mean; nan: it is no mean. needed_ps: time for an error by blocks, where the run is too short.
   double correlation_ps = std::numeric_limits<double>::quiet_NaN();
   double needed_ps = std::numeric_limits<double>::quiet_NaN();
 

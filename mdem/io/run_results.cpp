@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "io/measured.hpp"
+#include "io/pull.hpp"
 
 namespace ropewalk {
 namespace {
@@ -62,15 +63,21 @@ void add_torque(const std::vector<LogRow>& log, std::size_t within, RunResults& 
 }
 
 void add_strength(const std::vector<LogRow>& log, RunResults& r) {
-  const LogRow* most = strongest_row(log);
-  if (!most) return;
-  double shortest = (*most)["ends_strain"];
-  for (const LogRow* row = log.data(); row < most; ++row) shortest = std::fmin(shortest, (*row)["ends_strain"]);
-  const double strain = (*most)["ends_strain"];
+  const std::optional<LoggedPull> pull = pull_of(log);
+  if (!pull) return;
+  const LogRow& most = log[pull->most];
+  double shortest = most["ends_strain"];
+  for (std::size_t k = 0; k < pull->most; ++k) shortest = std::fmin(shortest, log[k]["ends_strain"]);
+  const double strain = most["ends_strain"];
   if (!(strain > drawn_from || strain - shortest > drawn_again)) return;
-  r.strength = (*most)["stress_GPa"];
-  r.strength_N_per_tex = (*most)["specific_stress_N_per_tex"];
-  r.strength_strain = (*most)["ends_strain"];
+  if (!pull->no_strength.empty()) {
+    r.no_strength = fmt::format("Stress came to {:.3g} GPa, which is no strength: {}.", pull->strength,
+                                pull->no_strength);
+    return;
+  }
+  r.strength = pull->strength;
+  r.strength_N_per_tex = most["specific_stress_N_per_tex"];
+  r.strength_strain = pull->strain;
   r.stress_fell = log.back()["stress_GPa"] < still_there * r.strength;
 }
 
@@ -98,7 +105,7 @@ const ResultColumn all_results[] = {
      [](const RunResults& r) { return static_cast<double>(r.tubes_broken); }},
     {{"strength_GPa", "GPa", "largest stress, of a rope whose ends move apart"},
      [](const RunResults& r) { return r.strength; }},
-    {{"strength_strain", "", "strain of the ends at that stress"},
+    {{"strength_strain", "", "strain of the ends since the pull began, at that stress"},
      [](const RunResults& r) { return r.strength_strain; }},
     {{"stored_at_limit_MJ_per_kg", "MJ/kg",
       "stored energy over mass in the last row before a limit was passed; without one, the largest"},
@@ -189,6 +196,17 @@ std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log) {
   return [=](const LogRow& r) { return 0.5 * (r[upper] + r[lower]); };
 }
 
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log, const InputError::Place& place) {
+  if (name == "torque_nN_nm")
+    return {"torque", "nN nm",
+            "torque about z that twists the rope, mean over both ends where both are held, and over the time between "
+            "two rows",
+            false, torque_of(log)};
+  const std::size_t k = column_of_log(name, place);
+  const Observable& o = observables()[k];
+  return {quantity_of(o), o.unit, o.meaning, o.whole, [k](const LogRow& row) { return row.values()[k]; }};
+}
+
 double rotation_at(const std::vector<LogRow>& log, double time) {
   for (std::size_t k = 0; k < log.size(); ++k) {
     if (log[k]["time_ps"] < time) continue;
@@ -271,6 +289,7 @@ std::vector<std::string> result_sentences(const RunResults& r, const std::vector
   if (std::isfinite(r.torque_max)) out.push_back(words.torque());
   if (r.tubes_broken > 0) out.push_back(words.first_break());
   if (std::isfinite(r.strength)) out.push_back(words.strength());
+  if (!r.no_strength.empty()) out.push_back(r.no_strength);
   if (r.links_broken > 0)
     out.push_back(fmt::format("{:.0f} of {:.0f} links broke.", r.links_broken, r.links_formed));
   if (r.stored_at_limit > stored_from) out.push_back(words.stored());

@@ -19,6 +19,16 @@ std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitR
 // end.
 std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log);
 
+// What curves show: a column of the log, or torque_nN_nm, which is torque_of().
+struct CurveColumn {
+  std::string quantity, unit, meaning;
+  bool whole = false;  // integers
+  std::function<double(const LogRow&)> value;
+};
+// `log`: of the run. Throws InputError where there is no such column.
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log,
+                         const InputError::Place& place = {});
+
 // Degrees: the rotation of the upper end at this time, ps, between two rows; NaN where there are none.
 double rotation_at(const std::vector<LogRow>& log, double time);
 
@@ -43,8 +53,9 @@ struct RunResults {
   double first_break_deg = none, first_break_ps = none;  // first break of a tube
   TubeBreak first_break;
   int tubes_broken = 0;
-  double strength = none, strength_N_per_tex = none,
-         strength_strain = none;  // GPa: largest stress; where ends are drawn apart
+  // GPa, N/tex, strain since the pull began (io/pull.hpp): at the largest stress; where ends are drawn apart.
+  double strength = none, strength_N_per_tex = none, strength_strain = none;
+  std::string no_strength;  // the largest stress, and why it is none; empty: it is, or nothing is drawn apart
   bool stress_fell = false;
   double stored_at_limit = none;  // MJ/kg: of the last row before the first limit; without one, the largest
   double links_formed = 0, links_broken = 0, bonds_broken = 0;  // counts in the last row

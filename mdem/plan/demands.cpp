@@ -77,6 +77,7 @@ DemandsAhead::DemandsAhead(const Scene& scene, const Prepared& p, std::size_t ty
   for (std::size_t axis = 0; axis < moved_aside_.size(); ++axis) moved_aside_[axis] = moved_apart(drives_, axis);
   for (int t = 0; t < tubes_; ++t) length_ = std::max(length_, free_length(scene, p.topology, t));
   period_ = p.topology.groups.images > 0 ? p.topology.groups.period : length_;
+  ends_inside_ = p.topology.groups.images > 0 && p.topology.strands() < p.topology.tubes();
   upright_ = stand_upright(p.state);
   if (upright_) section_ = RopeSection(p);
   rope_radius_ = section_.radius();
@@ -206,7 +207,7 @@ double DemandsAhead::sideways(std::size_t axis, double time) const {
 }
 
 double DemandsAhead::force_of(const Schedule& course, double time) const {
-  return course.value(time) + at_once(course.value(soon));
+  return course.value(time) + at_once(course.value(0));
 }
 
 // Forces at an end bend a tube that the other end holds; forces inside one that both ends hold, where they do.
@@ -233,25 +234,27 @@ void DemandsAhead::add(const At& what, Demands& out) const {
   double curvature = helix(rope_radius_, what.winding);
   // Clamps keep the tilt of the start: between them a tube of the rim goes aside by what the rope has wound since.
   if (keeps_tilt_ && slope != 0)
-    curvature = std::max(curvature, curvature_aside(rope_radius_ * std::fabs(what.winding - winding_) * length_, length_,
-                                                    what.tension, bond_.bend));
+    curvature = std::max(curvature, curvature_aside(rope_radius_ * std::fabs(what.winding - winding_) * length_,
+                                                    length_, what.tension, bond_.bend));
   out.curvature = std::max(out.curvature, curvature);
   out.twist = std::max(out.twist, std::fabs(what.twist));
   out.strain = std::max(out.strain, what.strain.high);
   out.pressed = std::max(out.pressed, -what.strain.low);
-  if (length_kept_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
+  if (length_kept_ && !ends_inside_) out.pressure = std::max(out.pressure, pressure_per_slope4_ * std::pow(slope, 4));
 }
 
 Demands DemandsAhead::at(double time) const {
   Demands out;
   const bool begun = time > 0;
   const double couple = begun ? axial(LoadEffect::about_z, time) : 0,
-               pull = begun && upright_ ? axial(LoadEffect::z, time) + at_once(axial(LoadEffect::z, soon)) : 0;
+               pull = begun && upright_ ? axial(LoadEffect::z, time) + at_once(axial(LoadEffect::z, 0)) : 0;
   // As the ends keep it; without them, as it starts.
   const double more = turned(time), winding = winding_ + more;
-  const double twist = twist_.farthest(more);
+  const double twist = twist_.farthest(ends_inside_ ? 0 : more);
   const double clings = begun ? clinging(couple, more) : winding_;
-  const Range wound = Range().moved(section_.outer_strain(clings, winding_), section_.inner_strain(clings, winding_));
+  Range wound;
+  if (!ends_inside_)
+    wound = wound.moved(section_.outer_strain(clings, winding_), section_.inner_strain(clings, winding_));
   const double aside = std::hypot(moved_aside_[0].value(time), moved_aside_[1].value(time));
   double stretched = 0;  // extension by the way aside
   double shortened = 0;  // beyond what a column bears
@@ -285,7 +288,13 @@ Demands DemandsAhead::at(double time) const {
     // The rope as a whole winds no farther than by Hooke's law where its tubes give way.
     const double by_hooke = couple / bond_.twist;
     double winds = std::fabs(twisted) < std::fabs(by_hooke) ? twisted : by_hooke;
-    if (winds_freely_) winds = section_.winding_under(couple, bond_, true, RopeSection::Tubes::slide);
+    if (winds_freely_) {
+      // It belongs to the length of the tubes, which are helices on a rope that gets shorter.
+      const double along_tube = section_.winding_under(couple, bond_, true, RopeSection::Tubes::slide),
+                   slope = rope_radius_ * along_tube;
+      constexpr double steepest = 0.9;  // sine
+      winds = along_tube / std::sqrt(1 - std::min(slope * slope, steepest * steepest));
+    }
     const double tension = pull + bond_.stretch * wound.high;
     add({winds, twisted, strain, tension}, out);
     if (std::fabs(twisted) < law_.largest_twist() && !winds_freely_)

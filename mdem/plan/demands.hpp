@@ -76,12 +76,13 @@ class DemandsAhead {
   // A load on elements that are no ends.
   struct Inner {
     LoadEffect does;
-    double elements = 1;    // of one tube, the most
+    double elements = 1;    // largest number in one tube
     double from_lower = 0;  // nm, along the tube: of their middle
   };
   std::vector<Inner> inner_;
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
-  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, winds_freely_ = false;
+  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, winds_freely_ = false,
+       ends_inside_ = false;  // of tubes, in a slice: nothing but contact turns or draws one
   bool moves_ = true, keeps_tilt_ = false, upright_ = true, straight_ = true;
   std::array<std::array<bool, 6>, 2> kept_ = {};  // by end and axis
   int tubes_ = 0;

@@ -268,11 +268,15 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
   if (!f.turned_between || !(f.turning > 0)) return std::nullopt;
   const double length = p.topology.groups.images > 0 ? p.topology.groups.period : f.length;
+  const auto first_of = [&](int t) {
+    return Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]);
+  };
+  Vector3 axis = Vector3::Zero();  // a rope may stand anywhere
+  for (int t = 0; t < p.topology.tubes(); ++t) axis += first_of(t) / p.topology.tubes();
   double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
-    const double rho2 =
-        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
+    const double rho2 = (first_of(t) - axis).head<2>().squaredNorm();
     const double part = part_of_strand(p.topology, t);
     twist += part * type.bond.twist;
     inertia += part * (type.mass * rho2 + type.inertia) / type.element_length;
@@ -289,18 +293,25 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
 }
 
 std::string words_of(const QuasiStatic& q) {
-  constexpr double enough = 0.05;
+  constexpr double enough = 0.05, waves = 10;
+  const double travel = q.slice ? 0.5 * q.travel : q.travel;
+  if (travel > q.time)
+    return fmt::format(
+        "A twist wave needs {:.3g} ps {} and the ramp lasts {:.3g} ps: one part turns before another feels it, and "
+        "the torque is that of the wave. Ramp over {:.2g} ps or more.",
+        travel, q.slice ? "from the ends of the slice to its middle" : "from end to end", q.time,
+        std::max(waves * travel, q.time * q.error / enough));
   const std::string percent = fmt::format(q.error < 0.1 ? "{:.2g}" : "{:.0f}", 100 * q.error);
   std::string text = q.slice ? fmt::format(
                                    "A twist wave needs {:.3g} ps from the ends of the slice to its middle and the "
                                    "ramp lasts {:.3g} ps: "
                                    "the torque may be up to {} % off its quasi-static value.",
-                                   0.5 * q.travel, q.time, percent)
+                                   travel, q.time, percent)
                              : fmt::format(
                                    "A twist wave needs {:.3g} ps from end to end and the ramp lasts {:.3g} ps: the "
                                    "torque of either end "
                                    "may be up to {} % off its quasi-static value.",
-                                   q.travel, q.time, percent);
+                                   travel, q.time, percent);
   if (q.error > enough)
     text += fmt::format(" Ramp over {:.3g} ps for {:.2g} %.", q.time * q.error / enough, 100 * enough);
   if (q.drag > 0.01)

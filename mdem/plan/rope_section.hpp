@@ -7,9 +7,10 @@
 //   couple on each    M = GJ w + EA Var(rho^2) (w^2 - w0^2) w/2 + 2 EI <rho^2> w^3
 //
 // where its length is free: s^2 = 1 + <rho^2> (w0^2 - w^2) leaves it without a force. Where the length is kept,
-// <rho^4> stands for the variance. Tubes that slide on one another lose that term, tubes whose spins are relaxed
-// the one with GJ. The last term is the bending of helices of the curvature rho w^2. 19 and 7 tubes with relaxed spins
-// under 12 nN nm come to 138 and 196 degrees in runs, and to 142 and 205 by this equation.
+// <rho^4> stands for the variance. Tubes that slide on one another lose that term, tubes whose spins are
+// relaxed the one with GJ. The last term is the bending of helices, whose curvature is rho w^2 for a w per
+// length of tube. 19 and 7 tubes with relaxed spins under 12 nN nm come to 138 and 196 degrees in runs, and to
+// 142 and 205 by this equation.
 #pragma once
 
 #include <cmath>
@@ -36,7 +37,7 @@ class RopeSection {
  private:
   double strain(double rho2, double winding, double from) const;
 
-  double mean_ = 0, mean_square_ = 0, least_ = 0, most_ = 0;  // of rho^2, nm^2 and nm^4
+  double mean_ = 0, mean_square_ = 0, least_ = 0, most_ = 0;  // rho^2 (nm^2), mean_square_: rho^4 (nm^4)
 };
 
 }  // namespace ropewalk

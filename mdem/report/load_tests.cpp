@@ -1,6 +1,7 @@
 #include "report/load_tests.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +65,15 @@ std::vector<LimitRecord> all_limits(const LoadTestGroup& group) {
   return all;
 }
 
+// Why runs of a group have no first value, each reason once.
+std::string why_none(const LoadTestGroup& group) {
+  std::vector<std::string> reasons;
+  for (const LoadTest& t : group.tests)
+    if (!t.why_none.empty() && std::find(reasons.begin(), reasons.end(), t.why_none) == reasons.end())
+      reasons.push_back(t.why_none);
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
 std::string title_of(const LoadTestKind& kind, const std::string& x) {
   std::string title = std::string(kind.drawn) + " against " + column_axis(x).quantity;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
@@ -88,6 +98,7 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
       line->bars = true;
     }
     const Mean at = mean_at(g, x), drawn = mean_of_value(g, 0);
+    if (!std::isfinite(drawn.value)) continue;
     line->x.push_back(at.value);
     line->y.push_back(drawn.value);
     line->error.push_back(drawn.error);
@@ -97,9 +108,12 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
     chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
   const auto beyond =
       std::count_if(groups.begin(), groups.end(), [](const LoadTestGroup& g) { return first_limit(all_limits(g)); });
-  if (beyond > 0)
-    chart.note += fmt::format("{}{} of {} points passed a limit of the model", chart.note.empty() ? "" : "; ", beyond,
-                              groups.size());
+  const auto note = [&](const std::string& words) { chart.note += (chart.note.empty() ? "" : "; ") + words; };
+  if (beyond > 0) note(fmt::format("{} of {} points passed a limit of the model", beyond, groups.size()));
+  const auto none = std::count_if(groups.begin(), groups.end(),
+                                  [](const LoadTestGroup& g) { return !std::isfinite(mean_of_value(g, 0).value); });
+  if (none > 0) note(fmt::format("{} of {} points without {} are left out", none, groups.size(), kind.drawn));
+  if (!kind.left_out.empty()) note(kind.left_out);
   const std::vector<ChartLine> measured = chart.lines;
   for (const auto& [level, name] : kind.levels) {
     ChartLine line{name, {}, {}, 5, true};
@@ -130,7 +144,7 @@ std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestG
   const bool turns = kind.yarn_diameter > 0;
   std::string text = "run,replicates,to_half," + x + (turns ? ",turns_per_m" : "");
   for (const OutputColumn& c : kind.columns) text += fmt::format(",{0},{0}_standard_error", c.name);
-  text += "," + column_names(limit_columns()) + "\n";
+  text += "," + column_names(limit_columns()) + ",why_none\n";
   for (const LoadTestGroup& g : groups) {
     text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), mean_at(g, x).value);
     if (turns) text += fmt::format(",{:.6g}", turns_per_m(kind, g).value);
@@ -138,7 +152,8 @@ std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestG
       const Mean m = mean_of_value(g, k);
       text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
     }
-    text += "," + limit_cells(all_limits(g)) + "\n";
+    const std::string why = why_none(g);
+    text += "," + limit_cells(all_limits(g)) + "," + (why.empty() ? "" : "\"" + why + "\"") + "\n";
   }
   return text;
 }
@@ -152,13 +167,12 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
                             const std::string& x, const std::string& lines, Figures& figures) {
   std::string html =
       heading(kind.heading) + paragraph(kind.words) +
-      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
-      escape_markup(column_axis(x).quantity) + "</th>";
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th>" + head_cell(x);
   if (kind.yarn_diameter > 0)
     html += fmt::format("<th>turns per metre of a yarn of {:.4g} µm</th>", 1e-3 * kind.yarn_diameter);
   std::vector<OutputColumn> columns = limit_columns();
   columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
-  for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
+  for (const OutputColumn& c : columns) html += head_cell(c.name, c.meaning);
   html += "</tr></thead><tbody>\n";
   for (const LoadTestGroup& g : groups) {
     const auto cell = [&](const Mean& m) {
@@ -177,6 +191,10 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
+  for (const LoadTestGroup& g : groups)
+    if (const std::string why = why_none(g); !why.empty())
+      html += paragraph(fmt::format("Of {} there is no {}: {}.", escape_markup(g.name), kind.drawn, why));
+  if (!kind.left_out.empty()) html += paragraph("Left out: " + kind.left_out + ".");
   const std::string svg = scatter_svg(chart_of(kind, groups, x));
   if (svg.empty()) return html;
   std::string caption =

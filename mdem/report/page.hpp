@@ -14,6 +14,9 @@ namespace ropewalk {
 std::string paragraph(const std::string& html);
 std::string heading(const std::string& text);
 
+// The name of a column, which a narrow table may break behind each underscore; with its meaning for who points at it.
+std::string head_cell(const std::string& name, const std::string& meaning = "");
+
 // The number of the next figure.
 class Figures {
  public:

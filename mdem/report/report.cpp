@@ -47,7 +47,11 @@ std::vector<std::string> terms_in(const std::vector<LogRow>& log) {
       columns.push_back(column);
   return columns;
 }
-std::string term_of(const std::string& column) { return column.substr(0, column.rfind("_eV")); }
+std::string term_of(const std::string& column) {
+  std::string name = column.substr(0, column.rfind("_eV"));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 Panel other_energies(const ReportInput& in) {
   const bool contacts = in.tubes > 1;
@@ -632,7 +636,7 @@ bool is_zero(const ReportInput& in, const Panel& panel) {
   });
 }
 
-// Of a rope. Charts that would show a line at zero are named instead.
+// The part on the shape of a rope. Charts that would show a line at zero are named instead.
 std::string shape_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   std::vector<std::string> charts, zero;
   const auto add = [&](const Panel& panel) {

@@ -30,7 +30,7 @@ class RepeatedValues {
  private:
   std::string path_;
   Values values_;
-  std::shared_ptr<std::map<std::string, std::vector<double>>> read_;  // by the folder of the run
+  std::shared_ptr<std::map<std::string, std::vector<double>>> read_;  // values by the folder of the run
 };
 
 // The values that make up result_columns().

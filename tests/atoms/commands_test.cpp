@@ -360,6 +360,22 @@ TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   }
 }
 
+// Walls hold below the limit of twist and give way beyond it, where round ones are at rest as well.
+TEST_F(Bridge, WallsGiveWayBeyondTheirLimit) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  for (const double part : {0.8, 1.3}) {
+    const Elements twisted = rod(9, set.element_length, {0, part * set.validity.twist_collapse / set.radius, 0});
+    spit(dir / "state.csv", state_csv(twisted.topology, twisted.state));
+    const Outcome relaxed = run("atoms state.csv --parameters cnt-10-10-tersoff -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    const double thickness = nlohmann::json::parse(relaxed.out).at(0)["thickness_over_width"];
+    if (part < 1)
+      EXPECT_GT(thickness, 0.95);
+    else
+      EXPECT_LT(thickness, 0.8);
+  }
+}
+
 // Sets have the shift of one sublattice against the other: atoms of a tube at rest are placed where LAMMPS leaves
 // them. Without the shift those of (8,2) are 0.08 eV above that, those of (5,5) 0.3 eV.
 TEST_F(Bridge, AtomsOfATubeAtRestAreAtRest) {

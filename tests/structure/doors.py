@@ -35,7 +35,7 @@ DOORS = [
      "take threads_in_use() or use_threads()", {"mdem/io/program.cpp": "refuses what the environment asks for"}),
     ("children", r"(?<![\w.])(?:v?fork|exec[lv]\w*|posix_spawnp?|popen|system)\s*\(",
      {"mdem/io/child_process.cpp", "mdem/io/processes.cpp"}, "take run_child(), run_program() or run_processes()",
-     {"mdem/main.cpp": "starts itself anew", "mdem/commands/siblings.cpp": "becomes its sibling"}),
+     {"mdem/commands/verb.cpp": "starts itself anew", "mdem/commands/siblings.cpp": "becomes its sibling"}),
     ("reports", r"\breport_html\s*\(", {"mdem/run/pages/run_report.cpp"}, "take write_report() or report_of()",
      {"mdem/report/report.cpp": "defines it", "mdem/report/report.hpp": "declares it"}),
 ]

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "chart/chart.hpp"
+#include "cli/command_line.hpp"
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/files.hpp"
@@ -153,6 +154,34 @@ int chart_command(const ChartArguments& a) {
   write_chart(a.out);
   fmt::print("Chart: {0}/chart.html, numbers: {0}/points.csv\n", a.out);
   return 0;
+}
+
+void add_chart(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ChartArguments>();
+  CLI::App* c = app.add_subcommand("chart", "Speed against accuracy: cost and error of each numerical setting");
+  c->add_option("--scenes", a->scenes, "Scenes, separated by commas [default: all]")->delimiter(',');
+  c->add_option("--out", a->out, "Directory of points and chart; finished points in it are not run again")
+      ->capture_default_str();
+  c->add_option("--from", a->from, "Draw the chart again from this points.csv; nothing is measured")
+      ->excludes(c->get_option("--scenes"));
+  c->add_flag("--quick", a->quick, "A few models of two scenes, or of the named ones");
+  c->add_flag("--instructions", a->instructions,
+              "Also count instructions with callgrind (valgrind), for finished points too");
+  c->add_flag("--again", a->again, "Run finished points again");
+  c->add_flag("--quiet", a->quiet, "No progress lines");
+  c->callback([a, &program] { program.code = chart_command(*a); });
+
+  // Hidden: the program runs itself with this verb under callgrind.
+  struct Counted {
+    std::string scene, model;
+    long steps = 0;
+  };
+  const auto counted = std::make_shared<Counted>();
+  CLI::App* steps = app.add_subcommand("chart-steps")->group("");
+  steps->add_option("scene", counted->scene)->required();
+  steps->add_option("model", counted->model)->required();
+  steps->add_option("steps", counted->steps)->required()->check(whole_number(1));
+  steps->callback([counted] { step_for_counting(counted->scene, counted->model, counted->steps); });
 }
 
 }  // namespace ropewalk::validate

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "atoms/potential.hpp"
+#include "cli/command_line.hpp"
 #include "core/own_files.hpp"
 #include "io/clocks.hpp"
 #include "io/draft.hpp"
@@ -27,6 +28,18 @@
 
 namespace ropewalk::validate {
 namespace {
+
+struct ParametrizeArguments {
+  std::vector<std::string> tubes;  // "7,3"
+  std::vector<std::string> potentials = {"tersoff"};
+  std::string out = "parametrized";
+  std::string friction = "like";  // pairs to measure: each tube beside its "like", "all" pairs, "none"
+  std::string tier = "full";      // as of `validate run`
+  double budget = 0;              // minutes of each tube's references; 0: any
+  int jobs = 0;                   // processes at a time; 0: one for each core
+  bool again = false;
+  bool quiet = false;
+};
 
 namespace fs = std::filesystem;
 
@@ -319,6 +332,9 @@ const Check* worst_rope(const ParametrizedTube& tube) {
   return worst;
 }
 
+namespace {
+
+// Exit codes: 0 all checks hold, 1 some miss, 2 wrong input, 3 a tube has no set or a case could not be run.
 int parametrize_command(const ParametrizeArguments& a) {
   const std::vector<Place> all = places(a);
   const std::vector<PairPlace> pairs = pairs_of(all, a.friction);
@@ -350,6 +366,36 @@ int parametrize_command(const ParametrizeArguments& a) {
     if (code == 0 && !tube.holds()) code = 1;
   }
   return code;
+}
+
+}  // namespace
+
+// Also the verb `ropewalk parametrize`.
+void add_parametrize(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ParametrizeArguments>();
+  CLI::App* verb = app.add_subcommand(
+      "parametrize", "From chiralities to validated parameter sets: calibrate, make atoms, validate, one report");
+  verb->add_option("tubes", a->tubes, "Chiralities, as in 7,3 10,10")->required();
+  verb->add_option("--potential", a->potentials, "tersoff, airebo, rebo, lcbop; several, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  verb->add_option("--out", a->out, "Directory of sets, atoms and reports; what is finished in it is kept")
+      ->capture_default_str();
+  verb->add_option(
+          "--friction", a->friction,
+          "Friction from atoms: of each tube beside its like, of all pairs of tubes, or none; some minutes a pair")
+      ->check(CLI::IsMember({"like", "all", "none"}))
+      ->capture_default_str();
+  verb->add_option("--tier", a->tier, "Cases to run: full, or quick: without ropes and bundles")
+      ->check(CLI::IsMember({"full", "quick"}))
+      ->capture_default_str();
+  verb->add_option("--budget", a->budget, "Minutes that the references of one tube may take [default: any]")
+      ->check(number_within(Bounds::positive()));
+  verb->add_option("-j,--jobs", a->jobs, "Processes at a time [default: one for each core]")
+      ->check(whole_number(1));
+  verb->add_flag("--again", a->again, "Make sets and results anew; references of atoms are kept");
+  verb->add_flag("--quiet", a->quiet, "No progress lines");
+  verb->callback([a, &program] { program.code = parametrize_command(*a); });
 }
 
 }  // namespace ropewalk::validate

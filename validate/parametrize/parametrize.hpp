@@ -15,20 +15,6 @@
 
 namespace ropewalk::validate {
 
-struct ParametrizeArguments {
-  std::vector<std::string> tubes;  // "7,3"
-  std::vector<std::string> potentials = {"tersoff"};
-  std::string out = "parametrized";
-  std::string friction = "like";  // pairs to measure: each tube beside its "like", "all" pairs, "none"
-  std::string tier = "full";      // as of `validate run`
-  double budget = 0;              // minutes of each tube's references; 0: any
-  int jobs = 0;                   // processes at a time; 0: one for each core
-  bool again = false;
-  bool quiet = false;
-};
-// Exit codes: 0 all checks hold, 1 some miss, 2 wrong input, 3 a tube has no set or a case could not be run.
-int parametrize_command(const ParametrizeArguments& arguments);
-
 // --- What the pages are made from ---
 
 struct ParametrizedTube {

@@ -232,7 +232,8 @@ std::string lead(const std::vector<Outcome>& outcomes) {
   if (apart > 0) text += fmt::format("; {} are not applicable to this set, for the reasons given", apart);
   return text +
          ". A case holds if every number of the model lies within its tolerance. Tolerances were fixed before the "
-         "cases were run, or the case says why not; no reference was used in a fit. A case that misses names the assumption that fails.";
+         "cases were run, or the case says why not; no reference was used in a fit. A case that misses names the "
+         "assumption that fails.";
 }
 
 PageTop top_of(const std::vector<Outcome>& outcomes) {

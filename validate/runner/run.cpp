@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/command_line.hpp"
 #include "core/own_files.hpp"
 #include "core/reference.hpp"
 #include "io/clocks.hpp"
@@ -312,6 +313,12 @@ const Case& find_case(const std::string& name) {
                    near.empty() ? "see `ropewalk validate list`" : fmt::format("did you mean \"{}\"?", near));
 }
 
+namespace {
+
+struct ListArguments {
+  bool json = false;
+};
+
 int list_command(const ListArguments& a) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Case& c : all_cases()) {
@@ -331,6 +338,8 @@ int list_command(const ListArguments& a) {
   if (a.json) fmt::print("{}\n", all.dump(1));
   return 0;
 }
+
+}  // namespace
 
 std::vector<Outcome> run_cases(const ValidateArguments& a) {
   Run run;
@@ -363,6 +372,9 @@ std::vector<Outcome> run_cases(const ValidateArguments& a) {
   return outcomes;
 }
 
+namespace {
+
+// Exit codes: 0 all checks hold, 1 some miss, 2 wrong input, 3 a case failed.
 int validate_command(const ValidateArguments& a) {
   const std::vector<Outcome> outcomes = run_cases(a);
   if (a.json) {
@@ -373,6 +385,10 @@ int validate_command(const ValidateArguments& a) {
   return exit_code(outcomes);
 }
 
+struct ReportArguments {
+  std::string dir;
+};
+
 int validation_report_command(const ReportArguments& a) {
   const std::vector<Outcome> outcomes = outcomes_in(a.dir);
   if (outcomes.empty())
@@ -381,6 +397,59 @@ int validation_report_command(const ReportArguments& a) {
   write_reports(a.dir, outcomes);
   fmt::print("{}/report.html\n", a.dir);
   return 0;
+}
+
+void add_run_options(CLI::App* verb, ValidateArguments& a) {
+  verb->add_option("cases", a.cases, "Names of cases, see list [default: all]");
+  verb->add_option(
+      "--parameters", a.parameters,
+      "Run the cases with this set. Those that have nothing to compare it with are listed with the reason");
+  verb->add_option("--out", a.out, "Directory of results and report; finished cases in it are not run again")
+      ->capture_default_str();
+  verb->add_option("-j,--jobs", a.jobs, "Cases at a time [default: one for each core]")->check(whole_number(1));
+  verb->add_flag("--again", a.again, "Run finished cases again");
+  verb->add_flag("--json", a.json, "JSON");
+  verb->add_flag("--quiet", a.quiet, "No progress lines");
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ListArguments>();
+  CLI::App* c = app.add_subcommand("list", "List the cases");
+  c->add_flag("--json", a->json, "JSON, with set-up, oracle and literature");
+  c->callback([a, &program] { program.code = list_command(*a); });
+}
+
+void add_run(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ValidateArguments>();
+  CLI::App* c = app.add_subcommand("run", "Run cases and write the report");
+  c->add_option("--tier", a->tier, "full, or quick: without ropes and bundles")->capture_default_str();
+  c->add_flag("--fresh", a->fresh, "Make the references with LAMMPS and compare them with the stored ones");
+  c->add_option("--with", a->with, "A second set: pairs of unlike tubes are compared too");
+  c->add_flag(
+      "--atoms", a->atoms,
+      "Make the references of the set's tube with LAMMPS and the set's potential, beside the set (minutes)");
+  c->add_option("--budget", a->budget, "Minutes that these may take [default: any]")
+      ->check(number_within(Bounds::positive()));
+  add_run_options(c, *a);
+  c->callback([a, &program] { program.code = validate_command(*a); });
+}
+
+void add_stability(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ValidateArguments>();
+  a->stability = true;
+  a->out = "stability";
+  CLI::App* c = app.add_subcommand("stability", "Find where the methods fail and compare with theory");
+  add_run_options(c, *a);
+  c->callback([a, &program] { program.code = validate_command(*a); });
+}
+
+void add_report(CLI::App& app, Program& program) {
+  const auto a = std::make_shared<ReportArguments>();
+  CLI::App* c = app.add_subcommand("report", "Write report.html and report.json again from the results");
+  c->add_option("dir", a->dir, "Directory of the results")->required();
+  c->callback([a, &program] { program.code = validation_report_command(*a); });
 }
 
 }  // namespace ropewalk::validate

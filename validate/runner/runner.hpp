@@ -1,4 +1,4 @@
-// The verbs of `ropewalk validate`. Exit codes: 0 all checks hold, 1 some miss, 2 wrong input, 3 a case failed.
+// What `ropewalk validate` runs, and what it writes about it.
 #pragma once
 
 #include <string>
@@ -9,11 +9,6 @@
 namespace ropewalk::validate {
 
 struct Outcome;
-
-struct ListArguments {
-  bool json = false;
-};
-int list_command(const ListArguments& arguments);
 
 struct ValidateArguments {
   std::vector<std::string> cases;  // empty: all of the tier
@@ -33,12 +28,6 @@ struct ValidateArguments {
 // `validate run` without its messages. Runs the cases whose results are not yet in the folder `arguments.out`, and
 // writes results and reports there. Throws InputError.
 std::vector<Outcome> run_cases(const ValidateArguments& arguments);
-int validate_command(const ValidateArguments& arguments);
-
-struct ReportArguments {
-  std::string dir;
-};
-int validation_report_command(const ReportArguments& arguments);
 
 // The directory of --out. Throws InputError where it cannot be made.
 void make_directory(const std::string& dir);

@@ -59,7 +59,7 @@ class PeriodicLoad : public Load {
   void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
   std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
-  // The images.
+  // The ends of the rope are the images of its elements.
   void add_ends(EndElements& ends) const override {
     for (const End end : {lower_end, upper_end})
       ends[end].insert(ends[end].end(), ends_[end].begin(), ends_[end].end());

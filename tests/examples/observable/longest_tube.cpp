@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/support.hpp"
-#include "commands/commands.hpp"
+#include "commands/program.hpp"
 #include "io/log.hpp"
 #include "observe/observables.hpp"
 
@@ -37,11 +37,14 @@ TEST_F(ObservableExample, IsInTheLogTheJsonTheReportAndTheTable) {
   test::spit(dir / "s.toml",
              "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\n"
              "length_nm = 14\n[twist]\nmoment_nN_nm = 5\nrate_nN_nm_per_ps = 5\nhold_ps = 1\n");
-  RunArguments scene;
-  scene.scene = dir / "s.toml";
-  scene.out = dir / "d";
-  scene.quiet = true;
-  ASSERT_EQ(run_command(scene), 0);
+  const auto ropewalk = [](std::vector<std::string> words) {
+    words.insert(words.begin(), "ropewalk");
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return ropewalk_main(static_cast<int>(words.size()), argv.data());
+  };
+  ASSERT_EQ(ropewalk({"run", dir / "s.toml", "--out", dir / "d", "--threads", "1", "--quiet"}), 0);
 
   const std::vector<LogRow> log = read_log(dir / "d/log.csv");
   const double straight = 10 * 1.3775870846515064;  // ten elements
@@ -49,17 +52,13 @@ TEST_F(ObservableExample, IsInTheLogTheJsonTheReportAndTheTable) {
   EXPECT_NE(log.back()["longest_tube_nm"], log.front()["longest_tube_nm"]);
   EXPECT_NEAR(log.back()["longest_tube_nm"], straight, 0.1 * straight);
 
-  ObserveArguments frames;
-  frames.dir = dir / "d";
-  frames.json = true;
   testing::internal::CaptureStdout();
-  ASSERT_EQ(observe_command(frames), 0);
+  ASSERT_EQ(ropewalk({"observe", dir / "d", "--json"}), 0);
   const auto json = nlohmann::json::parse(testing::internal::GetCapturedStdout());
   EXPECT_NEAR(json.back().at("longest_tube_nm"), log.back()["longest_tube_nm"], 1e-4);
 
-  frames.json = false;
   testing::internal::CaptureStdout();
-  ASSERT_EQ(observe_command(frames), 0);
+  ASSERT_EQ(ropewalk({"observe", dir / "d"}), 0);
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("longest"));
 
   EXPECT_THAT(test::slurp(dir / "d/report.html"), testing::HasSubstr("<th>longest_tube_nm</th><td>nm</td>"));

@@ -102,6 +102,18 @@ TEST(RunResults, StrengthIsThatOfARopeThatIsPulled) {
               ::testing::Contains("Stress passed its maximum, 4 GPa (0 N/tex), at a strain of 0.04."));
 }
 
+// Strain counts from the beginning of the pull; a rope that was not at rest then has no strength.
+TEST(RunResults, StrainIsThatOfThePull) {
+  std::vector<LogRow> log(6);
+  const double strain[] = {0, -0.004, -0.0045, -0.003, -0.0015, 0.001}, stress[] = {0, 0.05, 0, 0.7, 1.4, 0.2};
+  for (std::size_t k = 0; k < log.size(); ++k) log[k]["ends_strain"] = strain[k], log[k]["stress_GPa"] = stress[k];
+  EXPECT_NEAR(run_results(log, {}, {}).strength_strain, 0.003, 1e-12);
+  log[3]["stress_GPa"] = -0.9;
+  const RunResults r = run_results(log, {}, {});
+  EXPECT_TRUE(std::isnan(r.strength));
+  EXPECT_THAT(result_sentences(r), ::testing::Contains(HasSubstr("Stress came to 1.4 GPa, which is no strength: its")));
+}
+
 // A rope that is bent grows shorter, and its clamps bear its cohesion: that is no strength, and noise is no torque.
 TEST(RunResults, OfABentRopeIsItsMoment) {
   std::vector<LogRow> log = twisted(1);

@@ -210,7 +210,7 @@ TEST(Demands, OfRelaxedSpinsAreThoseOfBentTubes) {
   };
   for (const Case& c : {Case{7, 196, 0.0640, 0.0065}, {19, 138, 0.0582, 0.0035}}) {
     SCOPED_TRACE(c.tubes);
-    const Scene scene = scene_of_text(
+    Scene scene = scene_of_text(
         fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = {}\n"
                     "length_nm = 20\n[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\nhold_ps = 60\n"
                     "geometric_only = true\n",
@@ -224,7 +224,7 @@ TEST(Demands, OfRelaxedSpinsAreThoseOfBentTubes) {
                     free_length(scene, p.topology, 0) / units::degree,
                 c.degrees, 0.06 * c.degrees);
     EXPECT_GT(most.pressed, c.strain);
-    EXPECT_LT(most.pressed, 8 * c.strain);
+    EXPECT_LT(most.pressed, 10 * c.strain);
     EXPECT_GT(most.strain, 0.003);
   }
 }
@@ -279,13 +279,14 @@ TEST(Demands, OfTethersAreWhatTheyPull) {
   const Ahead drawn = tethered(lower + tied(30, 5, 20));
   const BondStiffness& bond = drawn.p.topology.types[0].bond;
   const auto last = static_cast<std::size_t>(drawn.p.topology.tube_begin[1] - 1);
-  const double length = drawn.p.state.position[last].z() - drawn.p.state.position[0].z(), in_line = bond.stretch / length,
-               k = 20 * units::nN_nm, stretch = 30 - drawn.p.state.position[last].z() - 5;
+  const double length = drawn.p.state.position[last].z() - drawn.p.state.position[0].z(),
+               in_line = bond.stretch / length, k = 20 * units::nN_nm,
+               stretch = 30 - drawn.p.state.position[last].z() - 5;
   const auto strain = [&](double by) { return k * by / (1 + k / in_line) / bond.stretch; };
   // What pulls from the start on swings as far beyond its rest.
   EXPECT_NEAR(drawn.demands.at(100).strain, 2 * strain(stretch), 0.02 * strain(stretch));
   EXPECT_EQ(drawn.demands.at(100).pressed, 0);
-  EXPECT_EQ(drawn.demands.at(100).curvature, 0);
+  EXPECT_LT(drawn.demands.at(100).curvature, 1e-9);
   // One that is shorter than at rest pushes.
   const Ahead pressed = tethered(lower + tied(30, 5 + 2 * stretch, 20));
   EXPECT_NEAR(pressed.demands.at(100).pressed, 2 * strain(stretch), 0.02 * strain(stretch));
@@ -293,7 +294,7 @@ TEST(Demands, OfTethersAreWhatTheyPull) {
   // A tube that leaves the tether's other end, and one that breaks it on the way.
   const std::string leaves = "[[grip]]\nend = \"lower\"\nz = { displacement_nm = [[0, 0], [100, -4]] }\n";
   const Ahead leaving = tethered(leaves + tied(30, 5, 20)),
-              torn = tethered(leaves + tied(30, 5, 20) + "breaks_at_nm = 12\n");
+              torn = tethered(leaves + tied(30, 5, 20) + fmt::format("breaks_at_nm = {}\n", 7 + stretch));
   EXPECT_NEAR(leaving.demands.at(100).strain, strain(2 * stretch + 4), 0.01 * strain(stretch + 4));
   EXPECT_LT(torn.demands.at(100).strain, 1.01 * strain(stretch));
   EXPECT_GT(torn.demands.largest().strain, 1.5 * strain(stretch));
@@ -305,9 +306,10 @@ TEST(Demands, OfTethersAreWhatTheyPull) {
                                fmt::format("[[tether]]\ntube = 0\nelements = [-1]\nto_point_nm = [8, 0, {}]\n"
                                            "rest_nm = 7\nstiffness_nN_per_nm = 0.01\n",
                                            drawn.p.state.position[last].z()));
-  const double moment = 0.01 * units::nN_nm * length;
+  const double pull = 0.01 * units::nN_nm, beam = 3 * bond.bend / (length * length * length),
+               moment = pull * length / (1 + pull / beam);
   EXPECT_NEAR(aside.demands.at(100).curvature, 2 * moment / bond.bend, 0.06 * moment / bond.bend);
-  EXPECT_THAT(drawn.notes(), HasSubstr("The scene begins with strain at 0.0"));
+  EXPECT_THAT(drawn.notes(), HasSubstr("The load may bring strain to 0."));
 }
 
 // On a tube of 40 nm that both ends hold: half of a force in its middle, all that acts on its elements together, and
@@ -332,7 +334,8 @@ TEST(Demands, OfLoadsInsideOfTubesCountAllOfThem) {
   EXPECT_LT(bent.demands.at(1).curvature, 2 * 0.3 * 0.1 * units::nN_nm * 30 / bond.bend) << "no cantilever";
 }
 
-// Tubes that break bear no more than that: runs of these scenes break the first bond at 60.4 ps.
+// Tubes that break bear no more than that. A run at the same rate with strain = 0.015 breaks its first bond at 14.98
+// ps, where the forecast is 15.
 TEST(Demands, EndWhereTubesBreak) {
   const auto drawn = [](const std::string& failure) {
     return Ahead("[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nz = { strain = [[0, 0], [100, 0.1]] }\n"
@@ -343,8 +346,8 @@ TEST(Demands, EndWhereTubesBreak) {
   EXPECT_THAT(drawn("[failure]\nstrain = 0.06\n"),
               HasSubstr("The load may break tubes, from about 60 ps on: a bond breaks once it is strained by 0.06."));
   EXPECT_THAT(drawn("[failure]\nstrain = 0.06\n"), Not(HasSubstr("may bring strain")));
-  EXPECT_THAT(drawn("[failure]\nstrain = 0.2\n"), HasSubstr("may bring strain to 0.1, from about 80"));
-  EXPECT_THAT(drawn("[failure]\nstrain = 0.2\n"), Not(HasSubstr("may break tubes")));
+  EXPECT_THAT(drawn("[failure]\nstrain = 0.15\n"), HasSubstr("may bring strain to 0.1, from about 80"));
+  EXPECT_THAT(drawn("[failure]\nstrain = 0.15\n"), Not(HasSubstr("may break tubes")));
   // The weakest place breaks first, and others bear more.
   const std::string scattered = drawn("[failure]\nstrain = 0.08\nstrain_deviation = 0.02\n");
   EXPECT_THAT(scattered, HasSubstr("The load may break tubes, from about "));

@@ -567,7 +567,8 @@ class LinkTerm : public ForceTerm {
     std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
   }
 
-  // Of a slice: a link to an image above acts on the original through its own image, one period lower.
+  // Whether a slice has this link twice: a link to an image above acts on the original through its own image, one
+  // period lower.
   bool has_image(const LinkPlace& link) const { return here_.is_image(link.a) || here_.is_image(link.b); }
 
   void index() {
