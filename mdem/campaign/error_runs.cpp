@@ -206,7 +206,7 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   refuse_strange_files(base_);
   const std::string changed = changed_text(read_file(original(source)), source, plus),
                     name = plus ? source.error.plus : source.error.minus;
-  RunInputs inputs = inputs_of(base_, scene_);
+  RunInputs inputs = inputs_of(base_, scene_, prepared_);
   for (std::size_t k = 0; k < inputs.sets.size(); ++k)
     if (source.of == InputNumber::Of::set && (source.index == k || source.index == all_sets))
       inputs.sets[k] = changed_text(inputs.sets[k], source, plus);

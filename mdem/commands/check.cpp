@@ -8,6 +8,7 @@
 #include "commands/verb.hpp"
 #include "io/clocks.hpp"
 #include "observe/rope_size.hpp"
+#include "plan/energy_check.hpp"
 #include "plan/forecast.hpp"
 #include "run/accuracy.hpp"
 #include "run/expectations.hpp"
@@ -17,6 +18,7 @@
 #include "run/run_schedule.hpp"
 #include "scene/memory_size.hpp"
 #include "scene/network_words.hpp"
+#include "scene/parts_in_use.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_files.hpp"
@@ -200,6 +202,24 @@ int check_accuracy(const CheckArguments& a) {
   return 0;
 }
 
+// Whoever has written a law or a force term has no other test of a wrong sign.
+void say_own_forces(const Scene& scene, const Simulation& simulation) {
+  constexpr double agrees = 1e-6;
+  std::string parts;
+  for (const PartInUse& part : parts_in_use(scene))
+    if (part.key == "contact.law" || part.words.rfind("drive ", 0) == 0)
+      parts += (parts.empty() ? "" : ", ") + part.words;
+  if (parts.empty() || simulation.topology().groups.images > 0) return;
+  const EnergyCheck found = energy_check(simulation);
+  if (found.error() < agrees)
+    fmt::print("forces with {}: they are the falls of the energy to {:.1g}\n", parts, found.error());
+  else
+    fmt::print(
+        "note: With {} the forces are not the falls of the energy: along a random motion they give {:.6g} eV/nm, and "
+        "the energy {:.6g} eV/nm. Where the part has an energy, a sign or a factor is wrong.\n",
+        parts, found.by_forces, found.by_energy);
+}
+
 int check_command(const CheckArguments& a) {
   const std::string& path = a.path;
   const bool is_run = std::filesystem::is_directory(path);
@@ -219,6 +239,7 @@ int check_command(const CheckArguments& a) {
   }
   say_source(scene, p);
   for (const auto& drive : scene.drives) fmt::print("{}\n", drive->words());
+  say_own_forces(scene, simulation);
   for (const std::string& what : forgotten(scene.memory, p.interaction)) fmt::print("note: {}\n", what);
   for (const std::string& warning : warnings_of(scene, p)) fmt::print("note: {}\n", warning);
   for (const std::string& warning : warmth_of(scene, p)) fmt::print("note: {}\n", warning);

@@ -23,6 +23,7 @@
 #include "run/directory_lock.hpp"
 #include "run/results.hpp"
 #include "run/tell.hpp"
+#include "scene/missing_forces.hpp"
 
 namespace ropewalk {
 namespace {
@@ -232,6 +233,7 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    refuse_missing_forces(scene.missing_forces, dir.path);
     if (manifest.status == "taken from atoms")
       throw InputError({dir.path, 0, ""}, "was not run: its elements were taken from atoms",
                        "run a scene that begins with its final.csv");
@@ -309,11 +311,12 @@ int errors_command(const ErrorsArguments& a) {
     for (const bool plus : {true, false})
       if (const std::string& name = plus ? source.error.plus : source.error.minus; !name.empty())
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
-  const RunInputs as_it_was = inputs_of(run.dir, run.scene);
+  const RunInputs as_it_was = inputs_of(run.dir, run.scene, run.prepared);
   for (const NumericRun& r : plan.runs)
     repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
+      if (changed.until_ps > 0) changed.until_ps *= r.times;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);
     });
   if (!a.quiet) repeats.say_cost(run.manifest.wall_seconds * run.manifest.threads);

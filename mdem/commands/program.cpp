@@ -95,8 +95,9 @@ void add_help(CLI::App& app) {
       std::puts(scene_key_help().c_str());
       return;
     }
-    std::string text;  // one word may be a table, a key and a limit
-    for (const std::string& part : {table_help(*topic), scene_key_help(*topic), limit_help(*topic), page_of(*topic)})
+    std::string text;  // one word may be a table, a load, a key, a limit and a page
+    for (const std::string& part : {table_help(*topic), load_help(*topic), scene_key_help(*topic), limit_help(*topic),
+                                    page_of(*topic)})
       text += (text.empty() || part.empty() ? "" : "\n") + part;
     if (!text.empty()) {
       std::fputs(text.c_str(), stdout);

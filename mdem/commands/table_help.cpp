@@ -8,6 +8,7 @@
 
 #include "io/plain_text.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/loads/load_kind.hpp"
 #include "scene/scene_keys.hpp"
 
 namespace ropewalk {
@@ -112,6 +113,14 @@ std::string table_help(const std::string& name) {
     }
     return text;
   }
+  return "";
+}
+
+std::string load_help(const std::string& name) {
+  for (const LoadKind& kind : load_kinds())
+    if (kind.name == name)
+      return fmt::format("[[load]] with kind = \"{}\"; `ropewalk help load` has the keys of all loads\n{}", name,
+                         key_lines({"load", "", kind.keys}));
   return "";
 }
 

@@ -166,6 +166,13 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   write_file_atomically(dir.readme(), readme);
 }
 
+void refuse_full(const RunDirectory& to, bool force) {
+  std::error_code error;
+  if (!force && fs::is_directory(to.path, error) && !fs::is_empty(to.path, error))
+    throw InputError({to.path, 0, "--lammps"}, "is not empty",
+                     "choose another directory, or give --force to replace an earlier run or export");
+}
+
 }  // namespace
 
 RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, RunListener& listener) {
@@ -182,6 +189,7 @@ RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, 
 
 void export_scene(const Scene& scene, const RunDirectory& to, bool force, RunListener& listener) {
   refuse_what_lammps_lacks(scene);
+  refuse_full(to, force);
   RunSettings settings;
   settings.force = force;
   // LAMMPS goes on with it, or `resume`.
@@ -194,6 +202,7 @@ void export_run(const RunDirectory& from, const RunDirectory& to, bool force, Ru
   read_checkpoint(from);
   if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
     throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
+  refuse_full(to, force);
   const DirectoryLock lock = create_run_directory(to, force);
   copy_run(from, to, listener);
   write_lammps_files(to, listener);

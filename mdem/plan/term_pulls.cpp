@@ -69,8 +69,8 @@ State TermPulls::moved(double time) const {
       const double part = tube.length > 1 ? static_cast<double>(k) / (tube.length - 1) : 0,
                    angle = (1 - part) * turn[lower_end] + part * turn[upper_end];
       const Vector3 at = start_.position[i];
-      out.position[i] = Eigen::AngleAxisd(angle, Vector3::UnitZ()) * at +
-                        ((1 - part) * shift[lower_end] + part * shift[upper_end]);
+      out.position.set(i, Eigen::AngleAxisd(angle, Vector3::UnitZ()) * at +
+                              ((1 - part) * shift[lower_end] + part * shift[upper_end]));
     }
   }
   return out;
@@ -90,6 +90,14 @@ Vec3Array TermPulls::forces(const ForceTerm& term, const State& state) const {
     force.set(i, f);
   }
   return force;
+}
+
+// nm^3: how far a beam goes aside under a force across it there, times EI over the force.
+double TermPulls::yields(const OfTube& tube, int k) const {
+  const double a = topology_.type_of(tube.tube).element_length, lower = k * a, upper = (tube.length - 1 - k) * a;
+  if (tube.kept[lower_end] && tube.kept[upper_end]) return lower * lower * upper * upper / (3 * (lower + upper));
+  const double arm = tube.kept[lower_end] ? lower : tube.kept[upper_end] ? upper : 0;
+  return arm * arm * arm / 3;
 }
 
 TermPulls::Row TermPulls::row_of(const OfTube& tube, const Vec3Array& force) const {
@@ -146,10 +154,12 @@ TermPulls::Pulls TermPulls::at(double time, int type) const {
         for (std::size_t k = 1; k < way.size(); ++k)
           way[k] = way[k - 1] + part * rows[n].tension[k - 1] / of.bond.stretch * of.element_length;
         const double origin = tube.kept[lower_end] ? 0 : tube.kept[upper_end] ? way.back() : 0.5 * way.back();
-        for (int k = 0; k < tube.length; ++k)
-          state.position[place(k)] = Vector3(there.position[place(k)]) +
-                                     (way[static_cast<std::size_t>(k)] - origin) *
-                                         axis_of(start_.orientation[place(k)]);
+        for (int k = 0; k < tube.length; ++k) {
+          const Vector3 f = force[place(k)], t = axis_of(start_.orientation[place(k)]);
+          state.position.set(place(k), Vector3(there.position[place(k)]) +
+                                           (way[static_cast<std::size_t>(k)] - origin) * t +
+                                           part * yields(tube, k) / of.bond.bend * (f - f.dot(t) * t));
+        }
       }
       const Vec3Array now = forces(*term, state);
       double both = 0, own = 0;

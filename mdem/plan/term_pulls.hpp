@@ -1,11 +1,12 @@
 // What tethers, and other force terms whose forces follow from places alone, pull on the tubes of a scene while loads
 // move the ends of these.
 //
-// Every tube follows its ends evenly: it is shifted, drawn out and turned as they are. The terms say their forces
-// there. A tube that one end holds has the tension of all that pulls beyond; with both ends kept, the pull is shared
-// so that the tube is as long as it was; with none, its inertia bears it. A tube that gives way by what it is drawn
-// out relieves the term: along the line from there to the forces of the unstrained tube, the place where both agree.
-// Terms on one tube count one by one, so that two of them may relieve each other more than is foreseen.
+// Every tube follows its ends evenly: it is shifted, drawn out and turned as they are. The terms say their
+// forces there. A tube that one end holds has the tension of all that pulls beyond; with both ends kept, the
+// pull is shared so that the tube is as long as it was; with none, its inertia bears it. A tube that gives way,
+// drawn out or bent aside, relieves the term: along the line from there to the forces of the unstrained tube,
+// the place where both agree. Terms on one tube count one by one, so that two of them may relieve each other
+// more than is foreseen.
 #pragma once
 
 #include <array>
@@ -43,6 +44,7 @@ class TermPulls {
 
   State moved(double time) const;
   Vec3Array forces(const ForceTerm& term, const State& state) const;
+  double yields(const OfTube& tube, int k) const;
   Row row_of(const OfTube& tube, const Vec3Array& force) const;
 
   EndDrives drives_;

@@ -47,7 +47,11 @@ std::vector<std::string> terms_in(const std::vector<LogRow>& log) {
       columns.push_back(column);
   return columns;
 }
-std::string term_of(const std::string& column) { return column.substr(0, column.rfind("_eV")); }
+std::string term_of(const std::string& column) {
+  std::string name = column.substr(0, column.rfind("_eV"));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 Panel other_energies(const ReportInput& in) {
   const bool contacts = in.tubes > 1;

@@ -16,6 +16,9 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
+#include "scene/missing_forces.hpp"
+#include "scene/own_parts.hpp"
+#include "scene/parts_in_use.hpp"
 #include "scene/scene_place.hpp"
 
 namespace ropewalk {
@@ -105,6 +108,12 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
+  refuse_missing_forces(scene.missing_forces, scene.path);
+  if (const std::vector<PartInUse> own = parts_in_use(scene); !own.empty())
+    throw InputError(place_in(scene, own.front().key),
+                     fmt::format("is not for LAMMPS: lmp-ropewalk has no {}, which is of {} alone", own.front().words,
+                                 own_program()),
+                     fmt::format("run this scene with `{} run`", own_program()));
   Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
     if (lacking.key.empty()) lacking = drive->not_for_lammps();

@@ -1190,9 +1190,16 @@ reading = "per-tube"
 rate_nN_nm_per_ps = 0.2
 hold_ps = 10
 )");
-  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
-  const Outcome o = run("errors r --json --quiet");
-  ASSERT_EQ(o.code, 0) << o.err;
+  // Repeats end where the run was asked to end, and not at the end of the scene.
+  const auto end_of = [&](const char* log) { return ropewalk::read_log((dir / log).string()).back()["time_ps"]; };
+  Outcome o;
+  for (const char* go_on : {"run rope.toml --out r --quiet --until 1", "resume r --quiet --until 21"}) {
+    ASSERT_EQ(run(go_on).code, 0);
+    o = run("errors r --json --quiet");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(end_of("r/errors/GJ-plus/log.csv"), end_of("r/log.csv")) << go_on;
+  }
+  EXPECT_NEAR(end_of("r/log.csv"), 21, 0.05);
   const Json errors = Json::parse(o.out);
   const Json twist = errors.at("at_the_end").at("twist_eV");
   const double value = twist.at("value"), parts = twist.at("parts").at("GJ");
@@ -1381,11 +1388,11 @@ tolerance = 0.2
   EXPECT_NEAR(std::stod(cells[2]), torque.at("error").get<double>(), 0.01 * torque.at("error").get<double>());
   // A maximum has its own error: of the largest torque of each run, not of the torques in one row.
   const Json largest = found.at("results").at("torque_max_nN_nm");
-  EXPECT_GE(largest.at("value").get<double>(), torque.at("value").get<double>());
+  EXPECT_NEAR(largest.at("value").get<double>(), torque.at("value").get<double>(), 1) << "the mean of both ends";
   for (const char* part : {"statistics", "numerics", "parameters", "potential"})
     EXPECT_GT(largest.at(part).get<double>(), 0) << part;
   EXPECT_EQ(largest.at("runs_without"), 0);
-  EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
+  EXPECT_TRUE(std::regex_search(o.out, std::regex("of the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
       << o.out;
   EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
   ASSERT_EQ(run("picture r -o r.svg --curves torque_nN_nm").code, 0);

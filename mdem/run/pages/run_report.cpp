@@ -63,7 +63,10 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
+  if (!m.own_parts.empty()) add("of its own", m.own_parts, "parts that " + m.program + " has and no other program");
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+  if (!m.own_forces.empty())
+    add("forces of one's own", m.own_forces, "functions of Python, which no file of this run holds");
   if (!m.device.empty()) add("device", m.device, "moved the elements that no load acts on");
 }
 
