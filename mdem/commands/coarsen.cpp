@@ -77,7 +77,8 @@ int coarsen_command(const CoarsenArguments& a) {
     }
     if (stop_signal) return tell_stop();
     write_file_atomically(a.state, state_csv(coarse.topology(), coarse.state()));
-    fmt::print(to, "{} written: {} elements\n", a.state, coarse.topology().elements());
+    fmt::print(to, "{} written: {} elements. Go on with a scene that has [state] file = \"{}\"\n", a.state,
+               coarse.topology().elements(), a.state);
     return 0;
   }
   if (stop_signal) return tell_stop();

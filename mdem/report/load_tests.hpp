@@ -42,7 +42,8 @@ struct LoadTestKind {
 };
 
 // Columns: run, replicates, to_half, --x, turns_per_m where there is a yarn_diameter, then each of the kind with
-// its standard error, then limit_columns() of the replicate that passed a limit first, and why_none.
+// its standard error, then limit_columns() of the replicate that passed a limit first, and
+// why_none.
 std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestGroup>& groups,
                            const std::string& x);
 // The first column over the column `x` of the log, from 0, without groups that have none. With `yarn_law` over beta_deg with the cos^2 of that

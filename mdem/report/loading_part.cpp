@@ -77,9 +77,13 @@ Panel equilibria(const ReportInput& in) {
   Panel out{"States of rest",
             fmt::format(
                 "{} Equilibrium states along the schedules of the loads, without friction. Solid: stable. Dashed: "
-                "unstable, or the stability is not known.",
-                escape_markup(in.reason) + "."),
-            {by_moment || turned ? "torque" : "tension", by_moment || turned ? "nN nm" : "nN", false},
+                "unstable, or the stability is not known.{}",
+                escape_markup(in.reason) + ".",
+                by_moment ? " The moment is that of the scene, on each tube or in total." : ""),
+            {by_moment ? "moment of the scene"
+             : turned  ? "torque"
+                       : "tension",
+             by_moment || turned ? "nN nm" : "nN", false},
             {},
             false,
             false,

@@ -122,7 +122,8 @@ std::string LoadStepsLoop::words_of_curve() const {
     words += ", all stable";
   for (const Equilibrium& e : found_)
     if (e.saddles > 0)
-      words += fmt::format("; at {} it left a saddle of the energy: it winds or bends there by itself", load_words(e.time));
+      words += fmt::format("; at {} it left a saddle of the energy: it winds or bends there by itself",
+                           load_words(e.time));
   if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
     words += fmt::format("; the stability of {} is not known", unknown);
   return words;

@@ -209,8 +209,8 @@ void warn_of_opening_slice(const Prepared& p, std::vector<std::string>& warnings
   const double angle = std::atan(rim * twist);
   if (angle > bears)
     warnings.push_back(
-        fmt::format("Tubes that end in a slice slide where it is twisted: at {:.3g} degrees at its surface it may open, "
-                    "grow longer by itself, or end since its strands slid beyond their images. Twist it to 15 "
+        fmt::format("Tubes that end in a slice slide where it is twisted: at {:.3g} degrees at its surface it may "
+                    "open, grow longer by itself, or end since its strands slid beyond their images. Twist it to 15 "
                     "degrees, take more periodic.images, or leave tube_length_nm away.",
                     angle / units::degree));
 }

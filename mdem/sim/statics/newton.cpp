@@ -261,7 +261,7 @@ double NewtonStatics::work_to_come(const At& at, const VectorXd& d) const {
 
 // To the side where the energy falls farther. A state that is its own mirror image has none.
 bool NewtonStatics::push_along(const At& at, const VectorXd& motion) {
-  constexpr double alike = 0.01;  // part of the fall
+  constexpr double alike = 0.5;  // part of the fall: the motion is not exactly that of steepest descent
   const VectorXd d = motion * (0.1 * s_.topology().largest_radius() / farthest(motion));
   const double to_come = work_to_come(at, d);
   const Simulation before = s_;
