@@ -86,6 +86,8 @@ double expected_shock(const Scene& scene, const Prepared& p) {
 namespace {
 
 constexpr double at_once = 1e-3;  // ps
+// Tubes may break so much later than foreseen; then the rope is another one, of which nothing is foreseen.
+constexpr double latest_break = 1.25;
 
 // What a scene does to one limit.
 struct Ahead {
@@ -214,6 +216,7 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
                               first.from > at_once ? fmt::format("from about {:.3g} ps on", first.from)
                                                    : "from the start on",
                               first.by));
+  const double until = std::min(end, latest_break * first.from);
   for (const auto& [asked, member] : all_asked()) {
     const LimitKind& kind = *asked;
     const auto limit_of = [&, own = member](const Limits& of) {
@@ -228,7 +231,7 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
       const auto value = [&, own = member](const Demands& f) {
         return expected_of(f, p.topology.types[types[k]], strengths[k], own);
       };
-      const Ahead of_type = ahead_of(demands[k], end, value, here);
+      const Ahead of_type = ahead_of(demands[k], until, value, here);
       if (k > 0 && !(of_type.largest / here > ahead.largest / limit_of(limits[type]))) continue;
       ahead = of_type;
       type = types[k];
