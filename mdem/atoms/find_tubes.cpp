@@ -260,7 +260,7 @@ class Search {
     bool ring = false;
   };
 
-  // By bonds between regular atoms, or also over those beside holes.
+  // The closures follow bonds between regular atoms, or also those beside holes.
   Closures closures(const std::vector<std::uint32_t>& wall, bool over_edges) const {
     std::map<Vector, long> around;
     std::map<Vector, std::pair<long, Vector3>> along;
