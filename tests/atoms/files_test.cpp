@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
@@ -116,9 +117,9 @@ TEST_F(AtomFile, LeavesOutTheFrameAtWhichASecondFileGoesOn) {
   };
   AtomFiles dumps({file("a.dump", dump(0, 1) + dump(10, 2)), file("b.dump", dump(10, 2) + dump(20, 3))}, 1);
   AtomFrame read;
-  std::vector<double> heights;
-  while (dumps.next(read)) heights.push_back(10 * read.positions[0].z());
-  EXPECT_EQ(heights, (std::vector<double>{1, 2, 3}));
+  std::vector<long> heights;  // Angstrom
+  while (dumps.next(read)) heights.push_back(std::lround(10 * read.positions[0].z()));
+  EXPECT_EQ(heights, (std::vector<long>{1, 2, 3}));
   // Frames that state no time are 1 ps apart, also from one file to the next.
   const std::string frame = "1\ncomment\nC 0 0 0\n";
   AtomFiles untimed({file("a.xyz", frame + frame), file("b.xyz", frame + frame)}, 1);
