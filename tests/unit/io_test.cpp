@@ -220,7 +220,11 @@ TEST_F(IoTest, LogErrorsNameTheLine) {
   expect_error(reading(replaced(header, "\n", ",more\n") + good), 1, "more than");
   const std::string without_last = header.substr(0, header.rfind(','));
   const auto columns = std::count(header.begin(), header.end(), ',');
-  expect_error(reading(without_last + "\n" + good), 1, "ends after column " + std::to_string(columns));
+  const std::string without_two = without_last.substr(0, without_last.rfind(','));
+  expect_error(reading(without_two + "\n" + good), 1, "ends after column " + std::to_string(columns - 1));
+  // Logs of 0.3.0 lack the last column: they are read, and no row is added to them.
+  EXPECT_EQ(read_log(put("log.csv", without_last + "\n" + good.substr(0, good.rfind(',')) + "\n")).size(), 1u);
+  expect_error([&] { check_log_header(put("log.csv", without_last + "\n")); }, 1, "lacks columns");
   expect_error(reading(replaced(header, ",Q,", ",")), 1, "\"Q\" is needed");
   expect_error(reading(header + good + replaced(good, ",", "")), 3, "columns");
   expect_error(reading(header + good + good + replaced(good, ",", ",x")), 4, "time_ps");
@@ -646,7 +650,7 @@ TEST_F(IoTest, ManifestErrors) {
   const auto reading = [&](const std::string& text) {
     return [this, text] { read_manifest(put("m.json", text)); };
   };
-  expect_error(reading(replaced(good, "\"seed\": ", "\"seed\" ")), 10, "not JSON");
+  expect_error(reading(replaced(good, "\"seed\": ", "\"seed\" ")), 13, "not JSON");
   expect_error(reading("[1]"), 0, "format");
   expect_error(reading("{\"format\": 3}"), 0, "format");
   expect_error(reading(replaced(good, "\"seed\"", "\"sed\"")), 0, "seed: is missing");

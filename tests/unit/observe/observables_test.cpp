@@ -97,7 +97,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "3,"
       "0.3333333333333333,6.5,6.25,66.1,7e-07,-0,2.5,0.375,0.5,-0.75,0.25,4,5,6,42.97183463481174,2,16,0,0,0,0,0,"
       "0,0,0,0,0,"
-      "0,0,0,0\n");
+      "0,0,0,0,0\n");
 }
 
 TEST(Observables, NamesAreUniqueAndEndInTheirUnit) {
