@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
       "cells, van der Waals contact from the surface integral, both fitted with NLopt.\n"
       "Example: ropewalk calibrate --chirality 12,6",
       "ropewalk calibrate");
+  keep_help_within_width(app);
   app.set_version_flag("--version", std::string("ropewalk-calibrate ") + version + " (" + git_id + ")");
   app.require_subcommand(0, 1);
   Program program{argv, command_line(argc, argv)};

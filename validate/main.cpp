@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
       "ropewalk validate compares the model with exact theory, LAMMPS references and other codes.\n"
       "Exit code: 0 all hold, 1 some miss, 2 wrong input, 3 a case could not be run.",
       name);
+  keep_help_within_width(app);
   app.set_version_flag("--version", std::string("ropewalk-validate ") + version + " (" + git_id + ")");
   app.require_subcommand(1);
   Program program{argv, ""};

@@ -13,6 +13,7 @@
 #include "io/parameters_toml.hpp"
 #include "observe/time_mean.hpp"
 #include "run/run_directory.hpp"
+#include "scene/missing_forces.hpp"
 #include "sim/dynamics/thermostat.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
@@ -188,6 +189,7 @@ int fluctuations_command(const FluctuationsArguments& a) {
   if (!a.out.empty()) check_output(a.out, "--out", a.force);
   const RunDirectory dir{a.run};
   Scene scene = read_run_scene(dir);
+  refuse_missing_forces(scene.missing_forces, dir.path);
   if (!a.out.empty() && scene.sets.size() > 1)
     throw InputError({a.run, 0, "--out"}, "the run has several kinds of tubes",
                      "write one set at a time: coarsen them alone");

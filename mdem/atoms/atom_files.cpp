@@ -416,7 +416,8 @@ class AtomDumpReader : public Reader {
 
 class XyzReader : public Reader {
  public:
-  explicit XyzReader(const std::string& path) : lines_(path) {}
+  // `frames`: that came before this file. A file that states no time has its frames 1 ps apart.
+  XyzReader(const std::string& path, std::int64_t frames) : lines_(path), frame_(frames) {}
 
   bool next(AtomFrame& frame, std::vector<std::int64_t>& ids) override {
     do {
@@ -456,7 +457,7 @@ class XyzReader : public Reader {
   bool states_time() const override { return states_time_; }
 
  private:
-  // Of key="..." or key=...; empty: the head has no such key.
+  // The value of key="..." or key=...; empty: the head has no such key.
   static std::string value(const std::string& head, const std::string& key) {
     for (std::size_t at = head.find(key + "="); at != std::string::npos; at = head.find(key + "=", at + 1)) {
       if (at > 0 && head[at - 1] != ' ') continue;
@@ -505,7 +506,7 @@ class XyzReader : public Reader {
   }
 
   Lines lines_;
-  std::int64_t frame_ = 0;
+  std::int64_t frame_;
   bool states_time_ = false;
 };
 
@@ -523,9 +524,13 @@ struct AtomFiles::Impl {
   std::unique_ptr<atom_readers::Reader> reader;
   std::string file;
   bool cut_off = false, states_time = true;
+  std::int64_t frames = 0;  // that were read
+  double time = 0;          // ps, of the last one
+  bool opened = false;      // no frame of the present file was read
   std::vector<std::int64_t> first_ids;  // ids in the first frame, in rising order
 
   void open() {
+    opened = true;
     const File& f = files[at];
     file = f.path;
     if (f.format == atom_readers::Format::data)
@@ -533,7 +538,17 @@ struct AtomFiles::Impl {
     else if (f.format == atom_readers::Format::dump)
       reader = std::make_unique<atom_readers::AtomDumpReader>(f.path, species, time_step_fs);
     else
-      reader = std::make_unique<atom_readers::XyzReader>(f.path);
+      reader = std::make_unique<atom_readers::XyzReader>(f.path, frames);
+  }
+
+  // Whether a simulation that went on wrote the frame at which it had been stopped once more, into a further file.
+  bool again(const AtomFrame& frame) {
+    const bool first = opened;
+    opened = false;
+    if (first && frames > 0 && frame.time == time) return true;
+    ++frames;
+    time = frame.time;
+    return false;
   }
 
   // Brings the atoms into the order of their ids.
@@ -594,6 +609,7 @@ bool AtomFiles::next(AtomFrame& frame) {
       if (impl_->reader->next(frame, ids)) {
         impl_->states_time = impl_->reader->states_time();
         impl_->sort(frame, ids);
+        if (impl_->again(frame)) continue;
         return true;
       }
     } catch (const atom_readers::CutOff&) {

@@ -34,7 +34,8 @@ class AtomSource {
 
 // Frames of several files, one file after another. A data file beside dumps gives the species of their types and is
 // no frame itself. Dumps are sorted by their id, XYZ files keep their order. What carbon is, the files say: by the
-// element, or by the mass of a type; where there is one type and no mass, it is carbon.
+// element, or by the mass of a type; where there is one type and no mass, it is carbon. The first frame of a further file is
+// left out where it has the time of the frame before it.
 class AtomFiles : public AtomSource {
  public:
   // `time_step_fs`: of the steps of a dump that states no time.

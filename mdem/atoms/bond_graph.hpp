@@ -19,7 +19,7 @@ class BondGraph {
  public:
   static constexpr int most = 4;
 
-  // Of the atoms with a flag. Throws InputError at `file` where two of them overlap or the box is too short.
+  // The graph of the atoms with a flag. Throws InputError at `file` where two of them overlap or the box is too short.
   BondGraph(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box,
             const std::string& file);
 

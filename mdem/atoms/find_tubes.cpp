@@ -16,10 +16,11 @@
 namespace ropewalk {
 namespace {
 
-constexpr std::size_t smallest_wall = 60;    // atoms
-constexpr std::size_t smallest_sheet = 100;  // atoms, to be counted as such
-constexpr double whole_part = 0.85;          // of the sites near an end, where a tube begins
-constexpr double window = 0.4;               // nm, in which they are counted
+constexpr std::size_t smallest_wall = 60;     // atoms
+constexpr std::size_t smallest_sheet = 100;   // atoms, to be counted as such
+constexpr double whole_part = 0.85;           // of the sites near an end, where a tube begins
+constexpr double window = 0.4;                // nm, in which they are counted
+constexpr double shortest_circumference = 5;  // lattice constants, of tubes with a radius of 0.2 nm
 constexpr double longest_burgers = 12;  // lattice constants: a longer mismatch is no defect but a second closure
 constexpr std::uint32_t nobody = 0xffffffff;
 
@@ -259,14 +260,20 @@ class Search {
     bool ring = false;
   };
 
-  Closures closures(const std::vector<std::uint32_t>& wall) const {
+  // By bonds between regular atoms, or also over those beside holes.
+  Closures closures(const std::vector<std::uint32_t>& wall, bool over_edges) const {
     std::map<Vector, long> around;
     std::map<Vector, std::pair<long, Vector3>> along;
+    const auto counts = [&](std::uint32_t i) {
+      return labelled_[i] && (kind_[i] == Kind::regular || (over_edges && kind_[i] == Kind::edge));
+    };
     for (const std::uint32_t i : wall) {
-      if (!labelled_[i] || kind_[i] != Kind::regular) continue;
+      if (!counts(i)) continue;
       for (int type = 0; type < 3; ++type) {
-        const std::uint32_t j = graph_.neighbour(i, slot_[i][static_cast<std::size_t>(type)]);
-        if (j < i || !labelled_[j] || kind_[j] != Kind::regular) continue;
+        const int slot = slot_[i][static_cast<std::size_t>(type)];
+        if (slot < 0) continue;
+        const std::uint32_t j = graph_.neighbour(i, slot);
+        if (j < i || !counts(j)) continue;
         const Site expected = behind(site_[i], type);
         const int back = slot_[j][static_cast<std::size_t>(type)];
         if (expected.second != site_[j].second || back < 0 || graph_.neighbour(j, back) != i) continue;
@@ -289,7 +296,7 @@ class Search {
     Closures out;
     long most = 0;
     for (const auto& [w, votes] : around)
-      if (votes > most) {
+      if (votes > most && (!over_edges || w.length() > shortest_circumference)) {
         most = votes;
         out.around = w;
       }
@@ -350,7 +357,9 @@ class Search {
     Closures c;
     if (seed != nobody) {
       carry_sites(seed);
-      c = closures(wall);
+      c = closures(wall, false);
+      // Holes may lie side by side from one end of a short tube to the other.
+      if (c.around.zero()) c = closures(wall, true);
     }
     if (c.around.zero()) {
       found_.loose += static_cast<long>(wall.size());

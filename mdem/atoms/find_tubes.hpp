@@ -27,7 +27,7 @@ struct FoundTube {
   long top = 0;                     // height (in thirds of a hexagon) behind the last row
   bool endless = false;             // through a periodic box
   long without_site = 0;            // carbon atoms of this wall
-  // Of this wall: rings that are not of six atoms, atoms with two neighbours inside of it, and with four or more.
+  // Defects of this wall: rings that are not of six atoms, atoms with two neighbours in it, and with four or more.
   long pentagons = 0, heptagons = 0, open_atoms = 0, crowded = 0;
   bool cap_below = false, cap_above = false;
   Vector3 centre = Vector3::Zero();  // nm, of its atoms

@@ -144,9 +144,12 @@ std::string relax_input(const std::string& stem, const AtomForces& forces, std::
         "fix out all ave/time 1 1 1 c_of_parts mode vector file {} format \" %.12g\"\nrun 0 post no\nunfix out\n",
         lammps_quoted(stem + "-" + when + ".txt"));
   };
-  // Round walls under too much twist or bend rest on a saddle, which atoms that are moved a little leave.
-  text += energies("before") + "displace_atoms free random 0.02 0.02 0.02 5113 units box\n" +
-          "minimize 0.0 2.0e-3 3000 30000\n" + energies("after");
+  // Round walls under too much twist or bend rest on a saddle, where a minimiser ends. Motion at 20 K leaves it:
+  // the mode by which they give way grows, while displacements at random have next to nothing of it.
+  text += energies("before") +
+          "timestep 0.001\nvelocity free create 20.0 5113\nfix move free nve\nrun 500 post no\nunfix move\n"
+          "velocity all set 0.0 0.0 0.0\nminimize 0.0 2.0e-3 3000 30000\n" +
+          energies("after");
   return text + fmt::format("write_data {} nocoeff\n", lammps_quoted(stem + "-relaxed.data"));
 }
 

@@ -17,8 +17,8 @@ struct AtomForces {
   Potential potential;
   double epsilon = 0, sigma = 0, cutoff = 0;  // eV, nm
 };
-// Of sets that agree on the Lennard-Jones law. `potential`: a name or a file of pair_style and pair_coeff lines;
-// empty: that of the sets. Throws InputError where they name none, or several.
+// Forces between the atoms of tubes whose sets agree on the Lennard-Jones law. `potential`: a name or a file of
+// pair_style and pair_coeff lines; empty: that of the sets. Throws InputError where they name none, or several.
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential);
 
 // The pair_style and pair_coeff lines for tubes whose atoms are of the types 1 .. parts.

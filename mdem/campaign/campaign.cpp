@@ -77,7 +77,7 @@ std::string mean_cells(const std::vector<LogRow>& log, double mean_ps, const std
   return text;
 }
 
-// Of its points, whatever varies. What one scene alone is to give does not hold for them.
+// Whether the scene has an [[expect]] that holds for all points, whatever varies. One for a single scene does not.
 bool expects_something(const Sweep& sweep) {
   const toml::table scene = parsed_toml(sweep.scene_text, sweep.scene_path);
   const toml::array* expected = scene["expect"].as_array();

@@ -161,7 +161,7 @@ class InputsOf {
   ErrorInputs out_;
 };
 
-// Of the text of a file with its values changed. They are read as they stand there, so that no digit is lost.
+// The text of a file with its values changed. They are read as they stand there, so that no digit is lost.
 std::string changed_text(std::string text, const VariedNumber& source, bool plus) {
   if (source.of == InputNumber::Of::set) text = with_start_of_pull(text, source.error.name);
   const double step = (plus ? 1 : -1) * source.error.step;
@@ -207,7 +207,7 @@ int ErrorRuns::run(const VariedNumber& source, bool plus) const {
   refuse_strange_files(base_);
   const std::string changed = changed_text(read_file(original(source)), source, plus),
                     name = plus ? source.error.plus : source.error.minus;
-  RunInputs inputs = inputs_of(base_, scene_);
+  RunInputs inputs = inputs_of(base_, scene_, prepared_);
   for (std::size_t k = 0; k < inputs.sets.size(); ++k)
     if (source.of == InputNumber::Of::set && (source.index == k || source.index == all_sets))
       inputs.sets[k] = changed_text(inputs.sets[k], source, plus);

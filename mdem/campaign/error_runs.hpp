@@ -15,8 +15,8 @@ struct VariedNumber {
   ErrorSource error;
   InputNumber::Of of = InputNumber::Of::set;
   std::size_t index = 0;  // of the set or the file
-  // Of values in that file. They change together by the relative step of `error`; a single one that is 0, by the
-  // step itself. log_path: of a logarithm that changes with them.
+  // Keys of values in that file, which change together by the relative step of `error`; a single value that is 0, by
+  // the step itself. log_path: key of a logarithm that changes with them.
   std::vector<std::string> paths;
   std::string log_path = {};
 };

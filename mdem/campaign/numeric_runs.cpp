@@ -28,7 +28,7 @@ class Planning {
         scene_(scene),
         prepared_(prepared),
         log_(log),
-        inputs_(inputs_of(base, scene)),
+        inputs_(inputs_of(base, scene, prepared)),
         text_(repeatable_scene(inputs_.scene, scene, prepared)) {}
 
   NumericPlan go() {
@@ -63,7 +63,7 @@ class Planning {
       const Prepared p = prepare(changed);
       refuse_cooling(changed, p);
       const double steps = relaxes() ? elements : times * prepared_.time_step / p.time_step;
-      plan_.runs.push_back({folder, words, text, elements * steps});
+      plan_.runs.push_back({folder, words, text, elements * steps, times});
       return true;
     } catch (const InputError& e) {
       std::string why = e.what();

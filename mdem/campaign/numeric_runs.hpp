@@ -20,6 +20,7 @@ struct NumericRun {
   std::string words;   // "half the rate"
   std::string scene;   // its text
   double cost = 1;     // processor time, in that of the run
+  double times = 1;    // its time, in that of the run
 };
 
 struct NumericPlan {

@@ -42,8 +42,8 @@ void remove_hardly_begun(const RunDirectory& dir) {
   remove_run(dir, "");
 }
 
-int code_of(const RunResult& r) {
-  const int code = tell_end(r);
+int code_of(const RunResult& r, bool again) {
+  const int code = tell_end(r, again);
   return code == not_as_expected ? 0 : code;
 }
 

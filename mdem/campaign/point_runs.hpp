@@ -19,7 +19,7 @@ inline constexpr int point_busy = 75;  // exit code of a process that found its 
 void remove_hardly_begun(const RunDirectory& dir);
 // The exit code of a run of a campaign, which says how it ended. It is 0 also where the run is not as its scene
 // expects: the campaign counts that by itself (judged()).
-int code_of(const RunResult& result);
+int code_of(const RunResult& result, bool again = false);
 // Starts a run on one thread in a directory that is not there. Negative `until_ps`: to the scene's end.
 int run_anew(const RunDirectory& dir, const Scene& scene, double until_ps, OnLimit on_limit, RunListener& listener);
 // A run that was begun goes on, another one is started.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "campaign/campaign.hpp"
@@ -31,6 +32,25 @@ class RepeatedRunListener : public TerminalListener {
 
 bool holds(const std::string& file, const std::string& text) { return fs::exists(file) && read_file(file) == text; }
 
+// The time at which --until or --steps let a run end; -1: it went to the end of the scene, or a rule of the scene
+// ended it before.
+double end_if_asked(const RunDirectory& run, const Prepared& prepared) {
+  const std::vector<LogRow> log = read_log(run.log());
+  if (log.empty()) return -1;
+  const double end = log.back()["time_ps"], late = end - prepared.duration, step = 0.75 * prepared.time_step;
+  const bool by_rule = !read_manifest(run.manifest()).reason.empty();
+  return late > step || (late < -step && !by_rule) ? end : -1;
+}
+
+// Whether a run that has ended did so where it would end today.
+bool ends_there(const RunDirectory& dir, const Scene& scene, const RunInputs& inputs) {
+  if (scene.run.mode == RunOptions::Mode::relax) return true;
+  Scene repeated = read_run_scene(dir);
+  const double end = end_if_asked(dir, prepare(repeated));
+  const double step = 0.75 * units::fs * read_manifest(dir.manifest()).time_step_fs;
+  return inputs.until_ps < 0 || end < 0 ? (inputs.until_ps < 0) == (end < 0) : std::fabs(end - inputs.until_ps) < step;
+}
+
 bool is_of(const RunDirectory& dir, const RunInputs& inputs) {
   bool same = holds(dir.scene(), inputs.scene);
   for (std::size_t k = 0; same && k < inputs.sets.size(); ++k) same = holds(dir.parameters(k), inputs.sets[k]);
@@ -40,8 +60,9 @@ bool is_of(const RunDirectory& dir, const RunInputs& inputs) {
 
 }  // namespace
 
-RunInputs inputs_of(const RunDirectory& run, const Scene& scene) {
+RunInputs inputs_of(const RunDirectory& run, const Scene& scene, const Prepared& prepared) {
   RunInputs out{read_file(run.scene()), {}, {}};
+  if (scene.run.mode != RunOptions::Mode::relax) out.until_ps = end_if_asked(run, prepared);
   for (std::size_t k = 0; k < scene.sets.size(); ++k) out.sets.push_back(read_file(run.parameters(k)));
   for (const std::string& file : input_files(scene)) out.files.push_back(read_file(file));
   return out;
@@ -78,13 +99,19 @@ int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& 
   RepeatedRunListener listener;
   if (!again && is_of(dir, inputs)) {
     const PointProgress progress = progress_of(dir);
-    if (progress.stage == Stage::ended && progress.status == "finished") return 0;
-    if (progress.stage == Stage::begun) return code_of(go_through(resume_run(dir, {}, listener)));
+    if (progress.stage == Stage::ended && progress.status == "finished" && ends_there(dir, scene, inputs)) return 0;
+    if (progress.stage == Stage::begun) {
+      ResumeSettings settings;
+      settings.until_ps = inputs.until_ps;
+      return code_of(go_through(resume_run(dir, settings, listener)), true);
+    }
   }
   remove_run(dir, "--again");
   fs::create_directories(base.path + "/errors");
   const TemporaryFolder folder;
-  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, {}, listener)));
+  RunSettings settings;
+  settings.until_ps = inputs.until_ps;
+  return code_of(go_through(begin_run(scene_of(inputs, base, scene, folder.path()), dir, settings, listener)), true);
 }
 
 }  // namespace ropewalk

@@ -11,9 +11,10 @@ namespace ropewalk {
 struct RunInputs {
   std::string scene;
   std::vector<std::string> sets, files;  // texts, of the tube types and of the drives
+  double until_ps = -1;                  // time at which it stops; -1: the scene's end
 };
-// Those that a run was made with.
-RunInputs inputs_of(const RunDirectory& run, const Scene& scene);
+// Those that a run was made with, which has ended.
+RunInputs inputs_of(const RunDirectory& run, const Scene& scene, const Prepared& prepared);
 
 // The scene with its time step typed, and without frames between the first and the last.
 std::string repeatable_scene(const std::string& text, const Scene& scene, const Prepared& prepared);
@@ -22,8 +23,8 @@ std::string repeatable_scene(const std::string& text, const Scene& scene, const 
 Scene scene_of(const RunInputs& inputs, const RunDirectory& base, const Scene& scene, const std::string& folder);
 
 // Runs them in the directory errors/NAME of `base`. A run of the same inputs that was begun goes on, one that is
-// finished stays, unless `again` is set; one of other inputs is replaced. Returns its exit code; that it was not as
-// its scene expects is no failure.
+// finished stays, unless `again` is set; one of other inputs or with another end is replaced. Returns its exit code;
+// that it was not as its scene expects is no failure.
 int repeat_run(const RunDirectory& base, const Scene& scene, const std::string& name, const RunInputs& inputs,
                bool again);
 

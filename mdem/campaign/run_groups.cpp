@@ -113,7 +113,7 @@ RunCurve curve_of(const RunGroup& group, bool pictured, double mean_ps) {
 namespace {
 
 template <class Test>
-LoadTestGroup tests_of(const RunGroup& group, const char* remedy, const Test& test) {
+LoadTestGroup tests_of(const RunGroup& group, const LoadTestKind& kind, const char* remedy, const Test& test) {
   LoadTestGroup out{group.name, group.line, {}};
   for (const RunDirectory& run : group.runs) {
     refuse_strange_files(run);
@@ -124,20 +124,31 @@ LoadTestGroup tests_of(const RunGroup& group, const char* remedy, const Test& te
       throw InputError({run.log(), 0, ""}, e.what(), remedy);
     }
   }
+  if (group.runs.size() > 1) return out;
+  // A run that is repeated for the errors may have no such test.
+  const RepeatedValues values(group.runs.front(), [&](const RunDirectory& run) {
+    try {
+      return test(run).values;
+    } catch (const std::invalid_argument&) {
+      return std::vector<double>(kind.columns.size(), RunResults::none);
+    }
+  });
+  for (const WholeError& e : errors_of(group.runs.front(), kind.columns, values))
+    out.tests.front().errors.push_back(e.total());
   return out;
 }
 
 }  // namespace
 
 LoadTestGroup tensile_of(const RunGroup& group) {
-  return tests_of(group, "compare runs that pull a rope, see ends_strain and stress_GPa",
+  return tests_of(group, tensile_kind(), "compare runs that pull a rope, see ends_strain and stress_GPa",
                   [](const RunDirectory& run) {
                     return load_test(tensile_test(read_log(run.log()), heights_of_breaks(run.events())));
                   });
 }
 
 LoadTestGroup torsion_of(const RunGroup& group) {
-  return tests_of(group, "compare runs that twist a rope, see rotation_deg and torque_upper_nN_nm",
+  return tests_of(group, torsion_kind(), "compare runs that twist a rope, see rotation_deg and torque_nN_nm",
                   [](const RunDirectory& run) { return torsion_test(read_log(run.log()), results_of(run)); });
 }
 

@@ -12,7 +12,7 @@ namespace ropewalk {
 
 struct RunGroup {
   std::string name;
-  // Of a campaign: the keys that vary, but the first of them, and their values: "tube_length_nm, per_nm" and "20,
+  // The keys that vary in a campaign, but the first of them, and their values: "tube_length_nm, per_nm" and "20,
   // 0.05". Groups with the same values are points of one line of a figure.
   std::string line_keys = {}, line = {};
   std::vector<RunDirectory> runs;

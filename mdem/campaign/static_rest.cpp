@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "campaign/rest.hpp"
+#include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "observe/mode_shape.hpp"
 #include "run/equilibrium_of.hpp"
@@ -58,8 +59,7 @@ LogRow row_of(const MovingScene& m) {
 
 }  // namespace
 
-StaticRest static_rest(const Scene& scene, const std::string& from, const std::function<bool()>& goes_on,
-                       const State* begin) {
+StaticRest static_rest(const Scene& scene, const std::string& from, const State* begin) {
   MovingScene moving(scene);
   const LogRow first = row_of(moving);
   if (begin) moving.simulation = simulation_of(moving.scene, moving.prepared, begin);
@@ -68,12 +68,13 @@ StaticRest static_rest(const Scene& scene, const std::string& from, const std::f
   how.fire = scene.run.solver == RunOptions::Solver::automatic;
   how.most_overloaded = enough_overloaded;
   NewtonStatics newton(s, how);
-  const auto progress = [&](long) { return goes_on(); };
+  const auto progress = [](long) { return stop_signal == 0; };
   Statics end;
   end.end = Statics::End::at_rest;
   if (scene.statics.steps > 0)
     end = newton.follow(load_step_times(s.loads(), scene.statics.steps).back(), scene.run.goal, progress);
   if (end.end == Statics::End::at_rest) end = newton.relax(scene.run.goal, scene.run.max_steps, progress);
+  if (end.end == Statics::End::interrupted) throw StaticsStopped{};
   s.end_relaxation();
   StaticRest out;
   out.from = from;

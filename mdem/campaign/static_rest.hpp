@@ -3,7 +3,6 @@
 // Friction, links, failure and baths have no part in it: a scene with one of them is refused.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,10 +31,11 @@ struct StaticRest {
   std::string branch() const;  // as RestSide::branch()
 };
 
-// The state of rest nearest to where the scene begins. With `begin` elements begin there; `goes_on` is asked
-// between steps, and where it says no, the state is not at rest.
-StaticRest static_rest(const Scene& scene, const std::string& from, const std::function<bool()>& goes_on,
-                       const State* begin = nullptr);
+// Where a signal stopped a search for states of rest (io/stop_signals.hpp).
+struct StaticsStopped {};
+
+// The state of rest nearest to where the scene begins. With `begin` elements begin there. Throws StaticsStopped.
+StaticRest static_rest(const Scene& scene, const std::string& from, const State* begin = nullptr);
 
 // Both ways along the motion that grows fastest, by a part of a radius; none where it is not known.
 std::vector<State> along_growing_motion(const Scene& scene, const StaticRest& rest);

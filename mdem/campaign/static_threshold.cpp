@@ -18,8 +18,7 @@ using Kind = StabilityVerdict::Kind;
 
 class Bisection {
  public:
-  Bisection(const Sweep& sweep, const SweepPoint& point, const std::function<bool()>& goes_on)
-      : sweep_(sweep), point_(point), goes_on_(goes_on) {
+  Bisection(const Sweep& sweep, const SweepPoint& point) : sweep_(sweep), point_(point) {
     out_.point = point.name;
     out_.theory = point_in_theory(sweep, point).static_theory();
   }
@@ -47,7 +46,7 @@ class Bisection {
     ++out_.states;
     StaticRest rest;
     try {
-      rest = static_rest(scene, "", goes_on_, last_ ? &*last_ : nullptr);
+      rest = static_rest(scene, "", last_ ? &*last_ : nullptr);
     } catch (const NumericalError& e) {  // the other points have their thresholds all the same
       return out_.why = fmt::format("no state of rest at {:g}: {}", value, e.what()), Outcome::unclear;
     }
@@ -70,16 +69,14 @@ class Bisection {
 
   const Sweep& sweep_;
   const SweepPoint& point_;
-  const std::function<bool()>& goes_on_;
   StaticThreshold out_;
   std::optional<State> last_;
 };
 
 }  // namespace
 
-StaticThreshold static_threshold(const Sweep& sweep, const SweepPoint& point,
-                                 const std::function<bool()>& goes_on) {
-  return Bisection(sweep, point, goes_on).go();
+StaticThreshold static_threshold(const Sweep& sweep, const SweepPoint& point) {
+  return Bisection(sweep, point).go();
 }
 
 std::vector<OutputColumn> static_threshold_columns() {

@@ -3,7 +3,6 @@
 // no part in it.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,8 +28,9 @@ struct StaticThreshold {
   double error() const { return 0.5 * (above - below); }
 };
 
-// Between the ends of the sweep's [threshold]. Throws InputError for a scene that statics does not take.
-StaticThreshold static_threshold(const Sweep& sweep, const SweepPoint& point, const std::function<bool()>& goes_on);
+// Between the ends of the sweep's [threshold]. Throws InputError for a scene that statics does not take, and
+// StaticsStopped.
+StaticThreshold static_threshold(const Sweep& sweep, const SweepPoint& point);
 
 // A row for each point.
 std::string static_thresholds_csv(const std::vector<StaticThreshold>& all);

@@ -390,8 +390,9 @@ Sweep sweep_of_text(const std::string& text, const std::string& path, const std:
   if (top.has("branch")) s.branch_at = branch.number("at_ps", Bounds::positive());
   branch.has("vary");
   if (top.has("threshold")) {
-    s.threshold = read_threshold(top.table("threshold"));
-    column_of_log(s.threshold->column, {s.path, 0, "threshold.column"});
+    const TomlTable threshold = top.table("threshold");
+    s.threshold = read_threshold(threshold);
+    column_of_log(s.threshold->column, {s.path, threshold.line("column"), "threshold.column"});
   }
   top.finish();
   const toml::table file = parsed_toml(text, path);

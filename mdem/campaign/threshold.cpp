@@ -328,7 +328,7 @@ std::size_t PhasePoint::unclear_seeds() const {
       std::count_if(seeds.begin(), seeds.end(), [](const Threshold& t) { return t.changes > 1; }));
 }
 
-// Of a search that has only begun, nothing is known.
+// A search that has only begun does not count: nothing is known of it.
 std::size_t PhasePoint::outside_seeds() const {
   return static_cast<std::size_t>(std::count_if(
       seeds.begin(), seeds.end(), [](const Threshold& t) { return t.outside && t.trials.size() > 1; }));

@@ -22,7 +22,7 @@ struct Trial {
   std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
   std::optional<double> turn;         // rad, of the ends of the rope about its axis, mean under the whole load
   std::string shape;                  // shape of the rope then (observe/rope_shape.hpp); empty: not known
-  std::string scene_hash;             // of its scene, parameter sets and state file
+  std::string scene_hash;             // hash of its scene, parameter sets and state file
   std::string first_limit = {};       // key of the limit that was passed first; empty: none was, or it is not known
   std::optional<double> first_limit_time = {};  // ps
 };

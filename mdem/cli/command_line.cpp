@@ -4,7 +4,11 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <utility>
 #include <vector>
+
+#include "io/plain_text.hpp"
 
 namespace ropewalk {
 namespace {
@@ -55,6 +59,13 @@ std::string verb_names(const CLI::App& app) {
   for (Verb verb : verbs_of(app)) names.push_back(verb->get_name());
   return joined(names);
 }
+
+class HelpWithinWidth : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return within_width(CLI::Formatter::make_help(app, std::move(name), mode));
+  }
+};
 
 // --- man ---
 
@@ -139,6 +150,8 @@ std::string refusal(const std::string& text, double value, const Bounds& bounds)
 }
 
 }  // namespace
+
+void keep_help_within_width(CLI::App& app) { app.formatter(std::make_shared<HelpWithinWidth>()); }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();

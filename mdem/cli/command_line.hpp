@@ -17,6 +17,9 @@ namespace ropewalk {
 // The fault in one line, with the nearest verb or option where one was mistyped. `program` as it is typed.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program);
 
+// Makes --help no wider than a terminal. Call it before verbs are added: they take the setting over.
+void keep_help_within_width(CLI::App& app);
+
 // The values that an option takes; the error names them.
 CLI::Validator number_within(const Bounds& bounds);
 constexpr int unbounded = std::numeric_limits<int>::max();

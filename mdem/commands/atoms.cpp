@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "commands/sweep_progress.hpp"
 #include "commands/verb.hpp"
 #include "exchange/atoms_of_state.hpp"
 #include "exchange/step_again.hpp"
 #include "io/files.hpp"
 #include "io/plain_text.hpp"
+#include "io/stop_signals.hpp"
 #include "model/error.hpp"
 #include "run/terminal_listener.hpp"
 #include "scene/kinds/state.hpp"
@@ -185,6 +187,7 @@ int atoms_command(const AtomsArguments& a) {
                         : is_run(a.path) ? state_of_frame({a.path}, a.frame)
                                          : state_of_file(with_source(a), a.path);
   const std::vector<TubePart> parts = selected_parts(s, selection);
+  if (a.relax) listen_to_stop_signals();
   const WrittenAtoms written = write_atoms_of(s, parts, a.out, a.potential);
   std::set<int> tubes;
   for (const TubePart& part : parts) tubes.insert(part.tube);
@@ -194,7 +197,16 @@ int atoms_command(const AtomsArguments& a) {
   if (!written.not_relaxable.empty() && format == AtomFormat::lammps_data)
     fmt::print(stderr, "note: no input of LAMMPS was written: {}\n", written.not_relaxable);
   if (!a.relax) return 0;
-  const std::vector<PartComparison> found = compare_with_atoms(s, parts, written, a.out, a.potential, {});
+  LammpsOptions options;
+  options.interrupted = [] { return stop_signal != 0; };
+  std::vector<PartComparison> found;
+  try {
+    found = compare_with_atoms(s, parts, written, a.out, a.potential, options);
+  } catch (...) {
+    for (const std::string& file : written.files) fs::remove(file);  // the same command would refuse to replace them
+    if (stop_signal) return tell_stop();
+    throw;
+  }
   if (a.json)
     fmt::print("{}\n", as_json(found).dump(1));
   else

@@ -28,7 +28,7 @@ std::string key_of(const std::string& name) {
   return key;
 }
 
-// Of CITATION.cff.
+// The references of CITATION.cff.
 constexpr const char* model =
     "@article{mdem-twist,\n"
     "  title = {Twisting carbon nanotube ropes with the mesoscopic distinct element method: geometry, packing, and "

@@ -62,8 +62,7 @@ std::vector<RunCurve> curves_of(const std::vector<RunGroup>& groups, bool pictur
 
 // The chart of a --svg; `of`: the option that chose what is drawn.
 std::string drawn(const std::string& svg, const char* of) {
-  if (svg.empty())
-    throw InputError({"", 0, of}, "has no two values to draw", "choose another column or more of the runs");
+  if (svg.empty()) throw InputError({"", 0, of}, "has no two values to draw", "name another column, or more runs");
   return svg;
 }
 
@@ -104,21 +103,24 @@ void compare_tests(const CompareArguments& a, const Wanted& wanted, const std::v
   }
   kind.yarn_diameter = 1e3 * a.yarn_diameter_um;
   const std::string x = !a.x.empty() ? a.x : a.torsion ? "rotation_deg" : "beta_deg";
+  column_of_log(x, {"", 0, "--x"});
   const std::vector<RunGroup> groups = ended_ones(with_others, a.names.front());
   std::vector<LoadTestGroup> tests;
   for (const RunGroup& group : groups) tests.push_back(a.torsion ? torsion_of(group) : tensile_of(group));
-  if (!a.svg.empty() && tests.size() == 1)
-    throw InputError({"", 0, a.torsion ? "--torsion" : "--tensile"},
-                     "has one point, and a figure needs two or more",
-                     a.torsion ? "draw the curve of the run: --x rotation_deg --y torque_upper_nN_nm"
-                               : "draw the curve of the run: --x ends_strain --y stress_GPa");
-  if (!a.svg.empty()) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
+  RunsFigure figure;
+  figure.x = a.torsion ? "rotation_deg" : "ends_strain";
+  figure.y = {a.torsion ? "torque_nN_nm" : "stress_GPa"};
+  if (!a.svg.empty() && tests.size() > 1) write(a.svg, drawn(load_tests_svg(kind, tests, x), "--x"));
+  if (!a.svg.empty() && tests.size() == 1) {
+    RunsFigure curve = figure;
+    if (!a.x.empty()) curve.x = a.x;
+    for (const std::string& level : a.levels) curve.levels.push_back(level_of(level));
+    write(a.svg, drawn(runs_svg(curves_of(groups, false, 0), curve), "--x"));
+    fmt::print("one point, so {} shows its {} against {}\n", a.svg, curve.y.front(), curve.x);
+  }
   if (!a.csv.empty()) write(a.csv, load_tests_csv(kind, tests, x));
   if (wanted.page.empty()) return;
   const std::vector<RunCurve> curves = curves_of(groups, true, 0);
-  RunsFigure figure;
-  figure.x = a.torsion ? "rotation_deg" : "ends_strain";
-  figure.y = {a.torsion ? "torque_upper_nN_nm" : "stress_GPa"};
   for (const char* column : {"links_broken", "bonds_broken"})
     if (std::any_of(curves.begin(), curves.end(), [&](const RunCurve& c) { return c.log.back()[column] > 0; }))
       figure.y.push_back(column);
@@ -140,8 +142,8 @@ void compare_curves(const CompareArguments& a, const Wanted& wanted, const std::
 }
 
 int compare_runs(const CompareArguments& a) {
-  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
-  for (const std::string& column : a.y) column_of_log(column, {"", 0, "--y"});
+  if (!a.x.empty()) curve_column(a.x, {}, {"", 0, "--x"});
+  for (const std::string& column : a.y) curve_column(column, {}, {"", 0, "--y"});
   Wanted wanted;
   if (a.svg.empty() && a.csv.empty()) wanted.page = a.page.empty() ? "compare.html" : a.page;
   for (const auto& [file, option] :
@@ -173,7 +175,10 @@ void add_compare(CLI::App& app, Program& program) {
   c->add_option("--x", a->x,
                 "Runs: column of log.csv on the horizontal axis [default: time_ps; with --tensile beta_deg, with "
                 "--torsion rotation_deg]");
-  c->add_option("--y", a->y, "Runs: columns, a chart each [default: the usual ones that vary]")->delimiter(',');
+  c->add_option("--y", a->y,
+                "Runs: columns, a chart each, such as torque_nN_nm, the mean of both ends [default: the usual ones "
+                "that vary]")
+      ->delimiter(',');
   c->add_option("--level", a->levels, "Runs: a value to compare with, as 0.45:NAME");
   c->add_option(
        "--mean", a->mean_ps,

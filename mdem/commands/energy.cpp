@@ -45,7 +45,7 @@ void print_table(const Forces& f, const NetForce& net) {
       "stretch {:16.9g} eV\nshear   {:16.9g} eV\nbend    {:16.9g} eV\ntwist   {:16.9g} eV\n"
       "vdW     {:16.9g} eV\n",
       e.stretch, e.shear, e.bend, e.twist, e.vdw);
-  // Of tubes in line; no other force term acts here.
+  // The contact of tubes in line: no other force term acts here.
   if (e.terms != 0) fmt::print("ends    {:16.9g} eV\n", e.terms);
   fmt::print("total   {:16.9g} eV\n\n", e.potential());
   fmt::print("{:>8} {:>14} {:>14} {:>14}  {:>14} {:>14} {:>14}\n", "element", "Fx eV/nm", "Fy", "Fz", "Mx eV", "My",

@@ -20,7 +20,10 @@
 #include "io/processes.hpp"
 #include "model/error.hpp"
 #include "report/runs_page.hpp"
+#include "run/directory_lock.hpp"
+#include "run/results.hpp"
 #include "run/tell.hpp"
+#include "scene/missing_forces.hpp"
 
 namespace ropewalk {
 namespace {
@@ -44,11 +47,38 @@ std::string value_text(double value, double error) {
                       : fmt::format("{:.0f}", std::round(value * unit) / unit);
 }
 
-void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
-  fmt::print(
-      "These errors follow from the parameters alone, not from time step, elements, rate of loading or "
-      "noise.\n{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n",
-      "at the end", "value", "± inputs", "± potential", "moves by", "the inputs' from");
+// Errors of what came of the run, by name.
+template <class Error>
+using NamedErrors = std::vector<std::pair<std::string, Error>>;
+
+// What the inputs' error comes from: "GJ 80 %, EA 12 %".
+std::string shares_words(const ResultError& e, const RunErrors& errors) {
+  double sum = 0;
+  for (const double part : e.parts) sum += part * part;
+  std::vector<std::pair<double, std::string>> shares;
+  for (std::size_t i = 0; i < e.parts.size(); ++i)
+    shares.emplace_back(e.parts[i] * e.parts[i] / sum, errors.sources()[i].name);
+  std::sort(shares.rbegin(), shares.rend());
+  std::string from;
+  for (const auto& [share, name] : shares)
+    if (share > 0.05) from += fmt::format("{}{} {:.0f} %", from.empty() ? "" : ", ", name, 100 * share);
+  return from + (e.linear ? "" : "; not linear: an estimate of its size only");
+}
+
+void print_table(const RunErrors& errors, const NamedErrors<ResultError>& results, const std::vector<LogRow>& log) {
+  fmt::print("These errors follow from the parameters alone, not from time step, elements, rate of loading or noise.\n");
+  const auto head = [](const char* what, const char* moves) {
+    fmt::print("{:<26} {:>14} {:>10} {:>11} {:>9}   {}\n", what, "value", "± inputs", "± potential", moves,
+               "the inputs' from");
+  };
+  if (!results.empty()) head("of the run", "");
+  for (const auto& [name, e] : results)
+    if (!std::isfinite(e.error))
+      fmt::print("{:<26} {:>14} not known: a repeated run has no such value\n", name, value_text(e.value, 0));
+    else
+      fmt::print("{:<26} {:>14} {:>10.2g} {:>11.2g} {:>9}   {}\n", name, value_text(e.value, e.error), e.error,
+                 e.potential, "", shares_words(e, errors));
+  head("at the end", "moves by");
   std::string none;
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
@@ -59,19 +89,9 @@ void print_table(const RunErrors& errors, const std::vector<LogRow>& log) {
       if (e.error > 0) none += fmt::format("{}{}", none.empty() ? "" : ", ", o.name);
       continue;
     }
-    double sum = 0;
-    for (const double part : e.parts) sum += part * part;
-    std::vector<std::pair<double, std::string>> shares;
-    for (std::size_t i = 0; i < e.parts.size(); ++i)
-      shares.emplace_back(e.parts[i] * e.parts[i] / sum, errors.sources()[i].name);
-    std::sort(shares.rbegin(), shares.rend());
-    std::string from;
-    for (const auto& [share, name] : shares)
-      if (share > 0.05) from += fmt::format("{}{} {:.0f} %", from.empty() ? "" : ", ", name, 100 * share);
     const double moves = movement(log, value);
-    fmt::print("{:<26} {:>14} {:>10.2g} {:>11.2g} {:>9.2g}   {}{}\n", o.name,
-               value_text(value(log.back()), std::max(e.error, moves)), e.error, e.potential, moves, from,
-               e.linear ? "" : "; not linear: an estimate of its size only");
+    fmt::print("{:<26} {:>14} {:>10.2g} {:>11.2g} {:>9.2g}   {}\n", o.name,
+               value_text(e.value, std::max(e.error, moves)), e.error, e.potential, moves, shares_words(e, errors));
   }
   if (!none.empty()) fmt::print("No influence beyond rounding on {}.\n", none);
 }
@@ -92,15 +112,34 @@ std::string remedy_of(const std::string& source, const NumericErrors& whole, con
 }
 
 // Results without an error beyond rounding are left out.
-void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters, const std::vector<LogRow>& log) {
+void print_whole_errors(const NumericErrors& whole, const NamedErrors<WholeError>& results,
+                        const RunErrors& parameters, const std::vector<LogRow>& log) {
   constexpr double rounding = 1e-9, noise = 1e-5;  // relative to the largest value and to 1 in its unit
   const double mean_ps = whole.runs().mean_ps;
-  fmt::print("{:<26} {:>14} {:>12} {:>11} {:>12} {:>11}   {}\n",
-             mean_ps > 0 ? fmt::format("mean of the last {:.4g} ps", mean_ps) : "at the end", "value",
-             "± statistics", "± numerics", "± parameters", "± potential", "decided by");
+  const auto head = [](const std::string& what) {
+    fmt::print("{:<26} {:>14} {:>12} {:>11} {:>12} {:>11}   {}\n", what, "value", "± statistics", "± numerics",
+               "± parameters", "± potential", "decided by");
+  };
   std::map<std::string, std::vector<std::string>> deciders;
   std::string too_short;
   double needed = 0;
+  const auto line = [&](const std::string& name, const WholeError& e) {
+    if (e.without > 0)
+      return fmt::print("{:<26} {:>14} not known: {} of the repeated runs have no such value\n", name,
+                        value_text(e.value, 0), e.without);
+    deciders[e.decides].push_back(name);
+    fmt::print(
+        "{:<26} {:>14} {:>12.2g} {:>11} {:>12.2g} {:>11.2g}   {}\n", name, value_text(e.value, e.total()),
+        e.statistics, fmt::format("{}{:.2g}", e.bound ? "≤ " : "", e.numerics), e.parameters, e.potential,
+        e.decides +
+            (std::isfinite(e.correlation_ps) ? fmt::format("; correlated over {:.2g} ps", e.correlation_ps) : ""));
+    if (!std::isfinite(e.needed_ps)) return;
+    too_short += (too_short.empty() ? "" : ", ") + name;
+    needed = std::max(needed, e.needed_ps);
+  };
+  if (!results.empty()) head("of the run");
+  for (const auto& [name, e] : results) line(name, e);
+  head(mean_ps > 0 ? fmt::format("mean of the last {:.4g} ps", mean_ps) : "at the end");
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
     if (o.group == ObservableGroup::time || o.name == "time_step_fs") continue;
@@ -109,16 +148,7 @@ void print_whole_errors(const NumericErrors& whole, const RunErrors& parameters,
     for (const LogRow& row : log)
       if (const double v = row.values()[k]; std::isfinite(v)) largest = std::max(largest, std::fabs(v));
     const bool zero = std::fabs(e.value) <= e.total() && e.total() <= noise * largest;
-    if (!std::isfinite(e.value) || e.total() <= rounding * largest || zero) continue;
-    deciders[e.decides].push_back(o.name);
-    fmt::print(
-        "{:<26} {:>14} {:>12.2g} {:>11} {:>12.2g} {:>11.2g}   {}\n", o.name, value_text(e.value, e.total()),
-        e.statistics, fmt::format("{}{:.2g}", e.bound ? "≤ " : "", e.numerics), e.parameters, e.potential,
-        e.decides +
-            (std::isfinite(e.correlation_ps) ? fmt::format("; correlated over {:.2g} ps", e.correlation_ps) : ""));
-    if (!std::isfinite(e.needed_ps)) continue;
-    too_short += (too_short.empty() ? "" : ", ") + o.name;
-    needed = std::max(needed, e.needed_ps);
+    if (std::isfinite(e.value) && e.total() > rounding * largest && !zero) line(o.name, e);
   }
   for (const auto& [source, names] : deciders)
     if (!source.empty())
@@ -203,6 +233,7 @@ struct FinishedRun {
 
   explicit FinishedRun(const std::string& path)
       : dir{path}, scene(read_run_scene(dir)), prepared(prepare(scene)), manifest(read_manifest(dir.manifest())) {
+    refuse_missing_forces(scene.missing_forces, dir.path);
     if (manifest.status == "taken from atoms")
       throw InputError({dir.path, 0, ""}, "was not run: its elements were taken from atoms",
                        "run a scene that begins with its final.csv");
@@ -214,13 +245,33 @@ struct FinishedRun {
   }
 };
 
+double size_of(const ResultError& e) { return e.error + e.potential; }
+double size_of(const WholeError& e) { return e.total(); }
+
+// Errors of the results that the run has and that another run may change. Where a repeated run has no such result,
+// the error is not finite.
+template <class Error>
+NamedErrors<Error> errors_of_results(const FinishedRun& run,
+                                     const std::function<Error(const RunErrors::ResultOfRun&, bool is_time)>& of) {
+  const RepeatedValues values = repeated_results(run.dir);
+  const std::vector<OutputColumn> columns = result_columns();
+  NamedErrors<Error> out;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (const Error e = of(values.of(k), std::string(columns[k].unit) == "ps"); std::isfinite(e.value) && size_of(e) != 0)
+      out.emplace_back(columns[k].name, e);
+  return out;
+}
+
 // Writes the errors of the results that follow from the errors of the inputs.
-RunErrors write_input_errors(const FinishedRun& run, const ErrorInputs& inputs, std::string& json) {
+RunErrors write_input_errors(const FinishedRun& run, const ErrorInputs& inputs, NamedErrors<ResultError>& results,
+                             std::string& json) {
   const std::string directory = run.dir.path + "/errors";
   std::vector<ErrorSource> sources;
   for (const VariedNumber& s : inputs.varied) sources.push_back(s.error);
   RunErrors errors(directory, sources, correlation_of(inputs.varied, run.scene), run.log);
-  json = run_errors_json(errors, run.log, inputs.without_error, inputs.not_varied);
+  results = errors_of_results<ResultError>(
+      run, [&](const RunErrors::ResultOfRun& result, bool) { return errors.of_runs(result); });
+  json = run_errors_json(errors, run.log, results, inputs.without_error, inputs.not_varied);
   write_file_atomically(directory + "/errors.json", json);
   write_file_atomically(run.dir.file("errors.csv"), run_errors_csv(errors, run.log, &ResultError::error));
   write_file_atomically(run.dir.file("errors-potential.csv"),
@@ -229,10 +280,13 @@ RunErrors write_input_errors(const FinishedRun& run, const ErrorInputs& inputs, 
 }
 
 NumericErrors write_numeric_errors(const FinishedRun& run, NumericRuns what, RunErrors parameters,
-                                   std::string& json) {
+                                   NamedErrors<WholeError>& results, std::string& json) {
   const std::string directory = run.dir.path + "/errors";
   const NumericErrors errors(directory, std::move(what), std::move(parameters), run.log);
-  json = numeric_errors_json(errors, run.log);
+  results = errors_of_results<WholeError>(run, [&](const RunErrors::ResultOfRun& result, bool is_time) {
+    return errors.of_runs(result, is_time);
+  });
+  json = numeric_errors_json(errors, run.log, results);
   write_file_atomically(directory + "/numerics.json", json);
   write_file_atomically(run.dir.file("errors-numerics.csv"),
                         whole_errors_csv(errors, run.log, [](const WholeError& e) { return e.numerics; }));
@@ -243,6 +297,7 @@ NumericErrors write_numeric_errors(const FinishedRun& run, NumericRuns what, Run
 
 int errors_command(const ErrorsArguments& a) {
   const FinishedRun run(a.dir);
+  const DirectoryLock lock(run.dir.path);  // two at a time would each refuse the runs of the other
   const int tubes = run.prepared.topology.tubes();
   const ErrorInputs inputs = a.numerics ? inputs_with_errors(run.scene, tubes) : error_inputs(run.scene, tubes);
   NumericPlan plan;
@@ -256,23 +311,26 @@ int errors_command(const ErrorsArguments& a) {
     for (const bool plus : {true, false})
       if (const std::string& name = plus ? source.error.plus : source.error.minus; !name.empty())
         repeats.add(name, 1, [&runs, &source, plus] { return runs.run(source, plus); });
-  const RunInputs as_it_was = inputs_of(run.dir, run.scene);
+  const RunInputs as_it_was = inputs_of(run.dir, run.scene, run.prepared);
   for (const NumericRun& r : plan.runs)
     repeats.add(r.words, r.cost, [&run, &a, &as_it_was, &r] {
       RunInputs changed = as_it_was;
       changed.scene = r.scene;
+      if (changed.until_ps > 0) changed.until_ps *= r.times;
       return repeat_run(run.dir, run.scene, r.folder, changed, a.again);
     });
   if (!a.quiet) repeats.say_cost(run.manifest.wall_seconds * run.manifest.threads);
   repeats.go();
   std::string json;
   RunErrors errors;
-  if (!inputs.varied.empty()) errors = write_input_errors(run, inputs, json);
+  NamedErrors<ResultError> by_inputs;
+  if (!inputs.varied.empty()) errors = write_input_errors(run, inputs, by_inputs, json);
   if (a.numerics) {
-    const NumericErrors whole = write_numeric_errors(run, plan.what, errors, json);
-    if (!a.json) print_whole_errors(whole, errors, run.log);
+    NamedErrors<WholeError> results;
+    const NumericErrors whole = write_numeric_errors(run, plan.what, errors, results, json);
+    if (!a.json) print_whole_errors(whole, results, errors, run.log);
   } else if (!a.json) {
-    print_table(errors, run.log);
+    print_table(errors, by_inputs, run.log);
   }
   write_report(run.dir, run.scene, run.prepared);
   if (a.json) {

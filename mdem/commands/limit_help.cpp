@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "io/plain_text.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -35,7 +37,7 @@ std::string limit_help(const std::string& limit) {
     if (!begins && !limit.empty() && heading == limit) text += line + "\n";
   });
   const std::size_t from = text.find_first_not_of('\n'), to = text.find_last_not_of('\n');
-  return from == std::string::npos ? "" : text.substr(from, to + 1 - from) + "\n";
+  return from == std::string::npos ? "" : markdown_within_width(text.substr(from, to + 1 - from));
 }
 
 }  // namespace ropewalk

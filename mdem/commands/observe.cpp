@@ -67,6 +67,8 @@ int observe_command(const ObserveArguments& a) {
     throw InputError({"", 0, "dir"}, "is missing", "name the directory of a run, or see `ropewalk observe --list`");
   const RunDirectory dir{a.dir};
   Scene scene = read_run_scene(dir);
+  if (!scene.missing_forces.empty())
+    fmt::print(stderr, "ropewalk: note: The run had forces of one's own, in Python: {}.\n", scene.missing_forces);
   if (a.neighbour_radius > 0) scene.observe.neighbour_radius = a.neighbour_radius;
   const Prepared prepared = prepare(scene);
   const Observer observer = make_observer(scene, prepared);

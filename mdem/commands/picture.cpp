@@ -6,7 +6,7 @@
 #include "commands/verb.hpp"
 #include "io/files.hpp"
 #include "io/limits_file.hpp"
-#include "io/log.hpp"
+#include "io/run_results.hpp"
 #include "model/error.hpp"
 #include "report/drawing.hpp"
 #include "run/pages/run_plate.hpp"
@@ -39,7 +39,7 @@ std::vector<std::vector<std::string>> curves_of(const std::vector<std::string>& 
         out.back().emplace_back();
       else
         out.back().back() += c;
-    for (const std::string& column : out.back()) column_of_log(column, {"", 0, "--curves"});
+    for (const std::string& column : out.back()) curve_column(column, {}, {"", 0, "--curves"});
   }
   return out;
 }
@@ -55,7 +55,7 @@ int picture_command(const PictureArguments& a) {
   options.colour = a.colour;
   options.sections = a.sections;
   options.curves = curves_of(a.curves);
-  if (!a.x.empty()) column_of_log(a.x, {"", 0, "--x"});
+  if (!a.x.empty()) curve_column(a.x, {}, {"", 0, "--x"});
   options.x = a.x;
   options.width = a.width;
   options.highest = a.highest;
@@ -84,7 +84,9 @@ void add_picture(CLI::App& app, Program& program) {
   c->add_option("--from", a->from,
                 "Seen from: side (the largest deflection in the page), x, y, z, or AZIMUTH,ELEVATION")
       ->capture_default_str();
-  c->add_option("--curves", a->curves, "Charts below: columns of log.csv, twist_eV+bend_eV,Q makes two")
+  c->add_option(
+       "--curves", a->curves,
+       "Charts below: columns of log.csv, or torque_nN_nm, the mean of both ends; twist_eV+bend_eV,Q makes two")
       ->delimiter(',');
   c->add_option("--x", a->x, "Column of log.csv over which these are drawn, such as rotation_deg [default: time]");
   add_colour(c, a->colour, "Tubes");

@@ -82,8 +82,9 @@ void add_help(CLI::App& app) {
       std::puts(scene_key_help().c_str());
       return;
     }
-    std::string text;  // one word may be a table, a key and a limit
-    for (const std::string& part : {table_help(*topic), scene_key_help(*topic), limit_help(*topic)})
+    std::string text;  // one word may be a table, a load, a key and a limit
+    for (const std::string& part :
+         {table_help(*topic), load_help(*topic), scene_key_help(*topic), limit_help(*topic)})
       text += (text.empty() || part.empty() ? "" : "\n") + part;
     if (!text.empty()) {
       std::fputs(text.c_str(), stdout);
@@ -159,6 +160,7 @@ int ropewalk_main(int argc, char** argv) {
       "Exit code: 0 done, 2 wrong input, 3 stopped with the reason, 4 not relaxed within run.max_steps, 5 stopped "
       "at a limit, 6 stopped by --wall-time, 7 done but more than three times beyond a limit, 8 done but not as "
       "[[expect]] says, 128 + signal.");
+  keep_help_within_width(app);
   app.set_version_flag("--version", fmt::format("ropewalk {} ({}), {}, {}, {}", version, git_id, compiler,
                                                 build_type, instruction_sets().front()));
   app.require_subcommand(1);

@@ -19,7 +19,6 @@
 #include "run/results.hpp"
 #include "scene/dissipation.hpp"
 #include "scene/scene_toml.hpp"
-#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -75,7 +74,6 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
       theory.compact * length / units::degree, theory.open * length / units::degree);
 }
 
-// Solves for both states in this process, since each takes some seconds.
 int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& p, const RestTheory& theory,
                     double length, const std::string& name) {
   if (a.viscosity)
@@ -84,22 +82,16 @@ int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& 
   const std::string out = a.out.empty() ? "runs/" + name + "-static-rest" : a.out, last = out + "/static-rest.json";
   if (!a.force && fs::exists(last))
     throw InputError({out, 0, "--out"}, "holds static-rest.json", "choose another name, or give --force");
-  use_threads(a.jobs);
-  listen_to_stop_signals();
   const Scene plain = static_scene(scene);
-  const auto goes_on = [] { return stop_signal == 0; };
   std::vector<StaticRest> rests;
   const std::array<double, 2> starts = rest_starts(p, theory);
   for (std::size_t side = 0; side < 2; ++side) {
     Scene wound = plain;
     wound.start.turn = starts[side];
-    rests.push_back(static_rest(wound, side == 0 ? "below" : "above", goes_on));
-    if (stop_signal) return tell_stop();
+    rests.push_back(static_rest(wound, side == 0 ? "below" : "above"));
     const std::string from = rests.back().from;
-    for (const State& begin : along_growing_motion(wound, rests.back())) {
-      rests.push_back(static_rest(wound, from + ", growing", goes_on, &begin));
-      if (stop_signal) return tell_stop();
-    }
+    for (const State& begin : along_growing_motion(wound, rests.back()))
+      rests.push_back(static_rest(wound, from + ", growing", &begin));
   }
   const std::string words = static_rest_words(rests, a.tolerance), json = static_rest_json(rests, words);
   fs::create_directories(out);
@@ -121,7 +113,7 @@ int rest_command(const RestArguments& a) {
   const RestTheory theory = rest_theory(scene, p);
   const double length = p.topology.length_of(0) * p.topology.longest_element();
   const std::string name = fs::path(a.scene).stem().string();
-  if (a.by_statics) return rest_by_statics(a, scene, p, theory, length, name);
+  if (a.by_statics) return solve_here(a.jobs, [&] { return rest_by_statics(a, scene, p, theory, length, name); });
   const CampaignDirectory dir{a.out.empty() ? "runs/" + name + "-rest" : a.out};
   scene.path = fs::absolute(a.scene).string();
   const Sweep sweep = sweep_of_text(rest_sweep(scene, p, theory, viscosity_of(a, scene)), dir.sweep());

@@ -109,6 +109,8 @@ int write_run_script(const RunArguments& a) {
                     checkpoint = shell_quoted(run + "/checkpoint.bin"), script = shell_quoted(absolute(a.slurm)),
                     with = fmt::format(" --wall-time {} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet{}",
                                        shell_quoted(a.wall_time), options_of(a));
+  constexpr double least = 60;  // s: SLURM counts in minutes
+  const double wall_time = seconds_of_wall_time(a.wall_time);
   write_file_atomically(
       a.slurm,
       fmt::format(
@@ -132,9 +134,12 @@ int write_run_script(const RunArguments& a) {
           "[ $code = 6 ] || exit $code\n"
           "[ \"$(cksum {})\" != \"$before\" ] || {{ echo 'no step was taken: give the job more time'; exit 6; }}\n"
           "exec sbatch {}\n",
-          std::max(1, a.threads), in_hours(seconds_of_wall_time(a.wall_time)), shell_quoted(run + ".messages.txt"),
+          std::max(1, a.threads), in_hours(std::max(least, wall_time)), shell_quoted(run + ".messages.txt"),
           checkpoint, checkpoint, program, shell_quoted(run), with, program, shell_quoted(absolute(a.scene)),
           shell_quoted(run), with, checkpoint, script));
+  if (wall_time < least)
+    fmt::print(stderr, "ropewalk: note: The shortest job of SLURM is one minute; the run uses {:g} s of each.\n",
+               wall_time);
   fmt::print("{} written: sbatch {}\n", a.slurm, a.slurm);
   return 0;
 }

@@ -7,11 +7,13 @@
 #include <algorithm>
 
 #include "campaign/point_runs.hpp"
+#include "campaign/static_rest.hpp"
 #include "io/clocks.hpp"
 #include "io/plain_text.hpp"
 #include "io/stop_signals.hpp"
 #include "run/tell.hpp"
 #include "run/wall_time.hpp"
+#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 
@@ -73,6 +75,16 @@ int tell_stop() {
   tell_as_is(
       fmt::format("ropewalk: stopped by signal {}; go on with the same command\n", static_cast<int>(stop_signal)));
   return 128 + stop_signal;
+}
+
+int solve_here(int threads, const std::function<int()>& solve) {
+  use_threads(threads);
+  listen_to_stop_signals();
+  try {
+    return solve();
+  } catch (const StaticsStopped&) {
+    return tell_stop();
+  }
 }
 
 }  // namespace ropewalk

@@ -1,6 +1,8 @@
 // The messages of `sweep` while its points run.
 #pragma once
 
+#include <functional>
+
 #include "campaign/sweep_runs.hpp"
 
 namespace ropewalk {
@@ -33,5 +35,9 @@ void tell_not_ended(const CampaignDirectory& dir, const std::string& point);
 
 // Says that a signal stopped the command, which may be given again. Returns its exit code.
 int tell_stop();
+
+// `solve` looks for states of rest in this process, by so many threads, since each state takes some seconds; its
+// exit code, or that of tell_stop() where a signal stopped it.
+int solve_here(int threads, const std::function<int()>& solve);
 
 }  // namespace ropewalk

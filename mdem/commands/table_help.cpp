@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <sstream>
 
+#include "io/plain_text.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/loads/load_kind.hpp"
 #include "scene/scene_keys.hpp"
 
 namespace ropewalk {
 namespace {
+
+constexpr const char* keys_heading = "Keys";
 
 std::string stripped(const std::string& text) {
   const std::size_t from = text.find_first_not_of('\n'), to = text.find_last_not_of('\n');
@@ -93,7 +97,7 @@ std::vector<TablePart> table_parts(const SceneTable& table) {
           {"Syntax", syntax_of(table)},
           as_written("Example"),
           {"Formula", one_after_the_other(theory_of(name), written(name, "Formula"))},
-          {"Keys", "Key, unit and default; below them the meaning.\n\n" + stripped(key_lines(table))},
+          {keys_heading, "Key, unit and default; below them the meaning.\n\n" + stripped(key_lines(table))},
           as_written("Does not go with"),
           as_written("Related")};
 }
@@ -104,10 +108,19 @@ std::string table_help(const std::string& name) {
     std::string text = (table.name.empty() ? "The top of a scene" : table.header()) + "\n";
     for (const TablePart& part : table_parts(table)) {
       if (part.text.empty()) continue;
-      text += (part.heading.empty() ? "\n" : "\n## " + part.heading + "\n\n") + part.text + "\n";
+      text += (part.heading.empty() ? "\n" : "\n## " + part.heading + "\n\n") +
+              (part.heading == keys_heading ? part.text + "\n" : markdown_within_width(part.text));
     }
     return text;
   }
+  return "";
+}
+
+std::string load_help(const std::string& name) {
+  for (const LoadKind& kind : load_kinds())
+    if (kind.name == name)
+      return fmt::format("[[load]] with kind = \"{}\"; `ropewalk help load` has the keys of all loads\n{}", name,
+                         key_lines({"load", "", kind.keys}));
   return "";
 }
 

@@ -21,6 +21,8 @@ std::vector<TablePart> table_parts(const SceneTable& table);
 // All parts of the scene's table of this name, as in "links" or "[links]"; "top" is the top of the file. Empty:
 // there is no such table.
 std::string table_help(const std::string& name);
+// The keys of the load of this kind; empty: there is no such kind.
+std::string load_help(const std::string& name);
 // The names below which docs/tables.md has a section.
 std::vector<std::string> described_tables();
 

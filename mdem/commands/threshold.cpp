@@ -18,7 +18,6 @@
 #include "model/error.hpp"
 #include "run/tell.hpp"
 #include "run/wall_time.hpp"
-#include "sim/threads/threads.hpp"
 
 namespace ropewalk {
 namespace {
@@ -65,7 +64,6 @@ void print_results(const CampaignDirectory& dir, const std::vector<PhasePoint>& 
   fmt::print("{} runs, {} of one core in all. Page: {}/thresholds.html\n", runs, duration_text(seconds), dir.path);
 }
 
-// In this process: a state of rest costs some seconds.
 int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const CampaignDirectory& dir) {
   for (const auto& [given, option] : {std::pair{!a.known.empty(), "--known"},
                                       {!a.slurm.empty(), "--slurm"},
@@ -73,16 +71,13 @@ int thresholds_by_statics(const ThresholdArguments& a, const Sweep& sweep, const
                                       {a.theory, "--theory"}})
     if (given)
       throw InputError({"", 0, option}, "is for runs, and --static makes none", "leave one of the two out");
-  use_threads(a.jobs);
-  listen_to_stop_signals();
   const std::string file = dir.path + "-static.csv";  // beside the directory of runs
   if (!a.force && fs::exists(file))
     throw InputError({file, 0, "--out"}, "exists", "choose another --out, or give --force");
   const std::vector<SweepPoint> all = points_of(sweep);
   std::vector<StaticThreshold> found;
   for (const SweepPoint& point : chosen_points(all, a.only)) {
-    found.push_back(static_threshold(sweep, point, [] { return stop_signal == 0; }));
-    if (stop_signal) return tell_stop();
+    found.push_back(static_threshold(sweep, point));
     const StaticThreshold& t = found.back();
     fmt::print("{:<40} {:<18} theory {}{}\n", t.point,
                t.found() ? fmt::format("{:.4g} ± {:.2g}", t.value(), t.error()) : std::string("not found"),
@@ -106,7 +101,7 @@ int threshold_command(const ThresholdArguments& a) {
   if (const std::string why = why_replicates_are_equal(sweep, points_of(sweep, PointsAs::scenes)); !why.empty())
     tell("note: " + why);
   const CampaignDirectory dir = campaign_directory(a.file, a.out);
-  if (a.by_statics) return thresholds_by_statics(a, sweep, dir);
+  if (a.by_statics) return solve_here(a.jobs, [&] { return thresholds_by_statics(a, sweep, dir); });
   const int jobs = a.jobs > 0 ? a.jobs : omp_get_num_procs();
   ThresholdSearch search(std::move(sweep), dir, a.only);
   if (const ClusterScripts scripts{a.slurm, a.snakemake}; scripts.any())

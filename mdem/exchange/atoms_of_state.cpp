@@ -274,22 +274,15 @@ WrittenAtoms write_atoms_of(const AtomicState& s, const std::vector<TubePart>& p
   return out;
 }
 
-std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::vector<TubePart>& parts,
-                                               const WrittenAtoms& written, const std::string& path,
-                                               const std::string& potential, const LammpsOptions& options) {
-  const AtomForces forces = atom_forces(s.sets, potential);
-  std::vector<PartComparison> out;
-  for (const TubePart& part : parts) out.push_back({part});
-  for (const AtomRange& r : written.ranges)
-    if (const auto part = static_cast<std::size_t>(r.part); !is_held(s, parts[part], r.element))
-      out[part].atoms += r.last - r.first + 1;
-  add_model_energies(s, out);
-  const fs::path place = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  const TemporaryFolder work(place.string());
+namespace {
+
+// Relaxes the atoms in a folder, and sets what they have against the model.
+void compare_in(const TemporaryFolder& work, const AtomicState& s, const std::vector<TubePart>& parts,
+                const WrittenAtoms& written, const std::string& path, const AtomForces& forces,
+                const LammpsOptions& options, std::vector<PartComparison>& out) {
   write_file_atomically(work.file("atoms.data"), read_file(path));
   const std::vector<PartEnergies> found =
       relax_atoms(work.path(), "atoms", forces, parts.size(), held_atoms(s, parts, written.ranges), options);
-  write_file_atomically(beside(path, "-relaxed.data"), read_file(work.file("atoms-relaxed.data")));
   AtomFiles relaxed({work.file("atoms-relaxed.data")}, 1);
   AtomFrame frame;
   relaxed.next(frame);
@@ -306,6 +299,31 @@ std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::
       at_rest[key] = energy_at_rest(s, parts[p], forces, work.path(), options);
     out[p].placed = found[p].before - at_rest[key];
     out[p].relaxed = found[p].after - at_rest[key];
+  }
+  write_file_atomically(beside(path, "-relaxed.data"), read_file(work.file("atoms-relaxed.data")));
+}
+
+}  // namespace
+
+std::vector<PartComparison> compare_with_atoms(const AtomicState& s, const std::vector<TubePart>& parts,
+                                               const WrittenAtoms& written, const std::string& path,
+                                               const std::string& potential, const LammpsOptions& options) {
+  const AtomForces forces = atom_forces(s.sets, potential);
+  std::vector<PartComparison> out;
+  for (const TubePart& part : parts) out.push_back({part});
+  for (const AtomRange& r : written.ranges)
+    if (const auto part = static_cast<std::size_t>(r.part); !is_held(s, parts[part], r.element))
+      out[part].atoms += r.last - r.first + 1;
+  add_model_energies(s, out);
+  const fs::path place = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  TemporaryFolder work(place.string());
+  try {
+    compare_in(work, s, parts, written, path, forces, options, out);
+  } catch (const LammpsDiskFull&) {
+    throw;
+  } catch (const LammpsError&) {  // it names files in that folder
+    if (!options.interrupted || !options.interrupted()) work.keep();
+    throw;
   }
   return out;
 }

@@ -57,7 +57,7 @@ std::vector<TubePart> selected_parts(const AtomicState& s, const AtomSelection& 
 // that is relaxed alike. Held elements do not count, whose atoms keep the stress of the cut.
 struct PartComparison {
   TubePart part;
-  long atoms = 0;                 // free ones
+  long atoms = 0;                 // number of atoms that are free to move
   double bonds = 0, contact = 0;  // model's energies, eV; half of each contact with other parts
   double placed = 0, relaxed = 0;
   // The flattest section of the relaxed atoms: thickness over width, 1 for a round one.

@@ -245,7 +245,7 @@ void Coarsening::fit_first() {
                       100 * missing, chirality_name(tube.chirality), tube.centre.x(), tube.centre.y(),
                       tube.centre.z()),
           "such a tube is no chain of elements: minimise it, or take it out");
-    // Of the equal parts of a turn, the one that turns the first element least.
+    // The lattice has equal parts of a turn: take the one that turns the first element least.
     const int g = std::gcd(tube.chirality.n, tube.chirality.m);
     int best = 0;
     double most = -1;
@@ -278,11 +278,9 @@ void Coarsening::fit_first() {
     throw InputError({atoms_->file(), 0, ""}, fmt::format("makes more than {} elements", max_elements),
                      "take fewer atoms");
   fit();
-  const std::vector<SectionShape> all = shapes();
   for (std::size_t t = 0; t < tubes_.size(); ++t) {
     const auto first = static_cast<std::size_t>(topology_.tube_begin[t]);
-    for (int e = 0; e < tubes_[t].elements; ++e)
-      tubes_[t].radius += all[first + static_cast<std::size_t>(e)].radius / tubes_[t].elements;
+    tubes_[t].radius = mean_radius(t);
     double squares = 0;
     for (const double d : fits_[t].misfits(positions_, state_, first)) squares += d * d;
     tubes_[t].misfit = std::sqrt(squares / static_cast<double>(tubes_[t].atoms));
@@ -298,16 +296,19 @@ void Coarsening::fit() {
     fits_[t].fit(positions_, state_, first);
     if (has_velocities()) fits_[t].fit_velocities(positions_, frame_.velocities, state_, first);
   }
-}
-
-std::vector<SectionShape> Coarsening::shapes() const {
-  std::vector<SectionShape> all;
+  shapes_.clear();
   for (std::size_t t = 0; t < fits_.size(); ++t) {
     const std::vector<SectionShape> own =
         fits_[t].shapes(positions_, state_, static_cast<std::size_t>(topology_.tube_begin[t]));
-    all.insert(all.end(), own.begin(), own.end());
+    shapes_.insert(shapes_.end(), own.begin(), own.end());
   }
-  return all;
+}
+
+double Coarsening::mean_radius(std::size_t tube) const {
+  double sum = 0;
+  for (int e = topology_.tube_begin[tube]; e < topology_.tube_begin[tube + 1]; ++e)
+    sum += shapes_[static_cast<std::size_t>(e)].radius;
+  return sum / (topology_.tube_begin[tube + 1] - topology_.tube_begin[tube]);
 }
 
 bool Coarsening::next() {
@@ -315,6 +316,10 @@ bool Coarsening::next() {
   const bool periodic = frame_.box.periodic_known;
   if (!atoms_->next(frame)) return false;
   if (!periodic) frame.box.periodic = frame_.box.periodic;
+  if (!(frame.time > frame_.time))
+    throw InputError({atoms_->file(), 0, ""},
+                     fmt::format("a frame at {:g} ps comes after one at {:g} ps", frame.time, frame_.time),
+                     "give the frames of one simulation in the order of their times, each once");
   frame_ = std::move(frame);
   // The images that have moved as their neighbours have: a rope that drifts through its box stays whole.
   const NearestImage nearest(frame_.box);
@@ -326,6 +331,13 @@ bool Coarsening::next() {
       at += way;
     }
   fit();
+  // A flat ribbon has 0.79 of the radius of the tube that collapsed to it.
+  for (std::size_t t = 0; t < tubes_.size(); ++t)
+    if (const double radius = mean_radius(t), first = tubes_[t].radius; !(radius > 0.5 * first && radius < 1.5 * first))
+      throw InputError({atoms_->file(), 0, ""},
+                       fmt::format("at {:g} ps the atoms of tube {} lie {:.3g} nm from its axis, in the first frame {:.3g} nm",
+                                   frame_.time, t, radius, first),
+                       "are they in another order than in the first frame, lengths not in Angstrom, or has it fallen apart?");
   return true;
 }
 

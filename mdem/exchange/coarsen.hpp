@@ -50,10 +50,11 @@ class Coarsening {
   // The present frame. Velocities are zero where the file has none.
   const State& state() const { return state_; }
   bool has_velocities() const { return !frame_.velocities.empty(); }
-  std::vector<SectionShape> shapes() const;
+  const std::vector<SectionShape>& shapes() const { return shapes_; }
   // Each element's cross-section: its atoms over its sites.
   std::vector<double> filled() const;
-  // Goes to the next frame; false at the end.
+  // Goes to the next frame; false at the end. Throws InputError where it is no later than the present one, or where its atoms
+  // are no tubes any more.
   bool next();
 
  private:
@@ -61,6 +62,7 @@ class Coarsening {
   void choose_sets();
   void fit_first();
   void fit();
+  double mean_radius(std::size_t tube) const;
 
   CoarsenSettings settings_;
   std::unique_ptr<AtomSource> atoms_;
@@ -73,6 +75,7 @@ class Coarsening {
   std::vector<CoarseTube> tubes_;
   std::vector<Vector3> positions_;  // atoms of elements in the present frame: the images that hang together
   State state_;
+  std::vector<SectionShape> shapes_;
 };
 
 struct CoarseRun {

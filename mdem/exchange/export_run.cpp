@@ -147,6 +147,12 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.heat = s.heat();
   LammpsStart start = start_of(scene, s);
   const LammpsScript script = script_of(scene, p, s);
+  const double apart = static_cast<double>(script.every) * script.time_step;
+  if (const double wanted = scene.run.log_every; wanted > 0 && wanted < apart * (1 - 1e-9) && !script.relax)
+    listener.tell(fmt::format("note: a row of the log needs a state, and LAMMPS writes one every {:.4g} ps: "
+                              "log_every_ps = {:.4g} has no say; for as many rows set run.frames_every_ps = {:.4g} "
+                              "and export again",
+                              apart, wanted, wanted));
   for (const auto& [path, content] :
        {std::pair{dir.tubes(), tubes_csv(p.topology)},
         std::pair{dir.first_state(),
@@ -158,6 +164,13 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   write_file_atomically(dir.start(), start_json(start));
   write_file_atomically(dir.job(), lammps_job(script, p.topology.elements()));
   write_file_atomically(dir.readme(), readme);
+}
+
+void refuse_full(const RunDirectory& to, bool force) {
+  std::error_code error;
+  if (!force && fs::is_directory(to.path, error) && !fs::is_empty(to.path, error))
+    throw InputError({to.path, 0, "--lammps"}, "is not empty",
+                     "choose another directory, or give --force to replace an earlier run or export");
 }
 
 }  // namespace
@@ -176,6 +189,7 @@ RunCheckpoint checkpoint_to_export(const RunDirectory& dir, const Scene& scene, 
 
 void export_scene(const Scene& scene, const RunDirectory& to, bool force, RunListener& listener) {
   refuse_what_lammps_lacks(scene);
+  refuse_full(to, force);
   RunSettings settings;
   settings.force = force;
   // LAMMPS goes on with it, or `resume`.
@@ -188,6 +202,7 @@ void export_run(const RunDirectory& from, const RunDirectory& to, bool force, Ru
   read_checkpoint(from);
   if (fs::exists(to.path) && fs::equivalent(from.path, to.path))
     throw InputError({to.path, 0, "--lammps"}, "is the run itself", "choose another directory");
+  refuse_full(to, force);
   const DirectoryLock lock = create_run_directory(to, force);
   copy_run(from, to, listener);
   write_lammps_files(to, listener);

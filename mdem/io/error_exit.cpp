@@ -49,7 +49,9 @@ std::string error_words(const std::exception& error) {
   if (system && std::ferror(stdout)) return no_output(system->code().value());
   if (system)
     return fmt::format("{}; {}", printable(error.what(), longest), remedy_for_errno(system->code().value()));
-  return printable(error.what(), longest);
+  // An exception of Python goes on with the lines that it came through.
+  const std::string what = error.what();
+  return printable(what.substr(0, what.find("\n\nAt:\n")), longest);
 }
 
 int error_code(const std::exception& error) {

@@ -23,8 +23,8 @@ template <class R, class Visit>
 void visit_limit(R&& r, const Visit& v) {
   v({"key", "", "key in the [limits] of a scene"}, r.key);
   v({"unit", "", "unit of limit and largest"}, r.unit);
-  v({"limit", "`unit`", "the limit; 0: not watched"}, r.limit);
-  v({"largest", "`unit`", "largest value so far"}, r.largest);
+  v({"limit", "`unit`", "the limit, below 0 where a bond is pressed; 0: not watched"}, r.limit);
+  v({"largest", "`unit`", "the value farthest beyond its limit so far, below 0 where a bond is pressed"}, r.largest);
   v({"largest_at_ps", "ps", "time of the largest value"}, r.largest_at_ps);
   v({"tube", "", "tube of the largest value, from 0; -1: none, or of the run as a whole"}, r.tube);
   v({"element", "", "element of the largest value, counted in the tube from 0; of a bond the first"}, r.element);
@@ -156,7 +156,7 @@ std::string beyond_sentence(const std::vector<LimitRecord>& limits) {
 
 std::string worst_words(const std::vector<LimitRecord>& limits) {
   const LimitRecord* worst = nullptr;
-  const auto ratio = [](const LimitRecord& r) { return r.passed && r.limit > 0 ? r.largest / r.limit : 0; };
+  const auto ratio = [](const LimitRecord& r) { return r.passed && r.limit != 0 ? r.largest / r.limit : 0; };
   for (const LimitRecord& r : limits)
     if (ratio(r) > (worst ? ratio(*worst) : 0)) worst = &r;
   return worst ? fmt::format("{} reached {:.3g} times its limit", worst->key, ratio(*worst)) : "";
@@ -165,7 +165,7 @@ std::string worst_words(const std::vector<LimitRecord>& limits) {
 double beyond_limits(const std::vector<LimitRecord>& limits) {
   double most = 0;
   for (const LimitRecord& r : limits)
-    if (r.passed && r.limit > 0) most = std::max(most, r.largest / r.limit);
+    if (r.passed && r.limit != 0) most = std::max(most, r.largest / r.limit);
   return most;
 }
 

@@ -14,7 +14,8 @@ namespace ropewalk {
 struct LimitRecord {
   std::string key;   // as in the scene's [limits]
   std::string unit;  // may be empty
-  double limit = 0;  // limit in that unit; 0: not watched
+  // In that unit, below zero where a bond is pressed; a limit of 0 is not watched.
+  double limit = 0;
   double largest = 0;
   double largest_at_ps = 0;
   int tube = -1;     // tube with the largest value; -1: no value

@@ -20,39 +20,50 @@ constexpr const char* other_log =
     "the scene again";
 constexpr const char* damaged_log = "the file was changed or damaged; restore it, or run the scene again";
 
-LogRow row_of(const CsvReader& csv) {
+// Columns that logs of 0.3.0 lack, whose runs had nothing of them: they read as 0.
+bool is_later(const std::string& column) { return column == "own_forces_eV"; }
+
+// `columns`: the observables that the file has, in its order.
+LogRow row_of(const CsvReader& csv, const std::vector<std::size_t>& columns) {
   LogRow row;
-  const std::size_t columns = row.values().size();
-  if (csv.cells().size() != columns)
-    csv.fail("", fmt::format("{} columns, {} are needed", csv.cells().size(), columns), damaged_log);
-  for (std::size_t k = 0; k < columns; ++k) {
-    const Observable& column = observables()[k];
+  if (csv.cells().size() != columns.size())
+    csv.fail("", fmt::format("{} columns, {} are needed", csv.cells().size(), columns.size()), damaged_log);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const Observable& column = observables()[columns[k]];
     const double v = csv.number(k, column.name, damaged_log);
     if (column.whole && std::isfinite(v) && v != std::floor(v))
       csv.fail(column.name, fmt::format("{} is not an integer", v), damaged_log);
-    row.values()[k] = v;
+    row.values()[columns[k]] = v;
   }
   return row;
 }
 
-void read_header(CsvReader& csv, const std::string& path) {
+// The observables of its columns.
+std::vector<std::size_t> read_header(CsvReader& csv, const std::string& path) {
   if (!csv.next()) throw InputError({path, 1, ""}, "there is no header", other_log);
   const std::vector<std::string_view>& names = csv.cells();
-  for (std::size_t k = 0; k < names.size(); ++k) {
+  std::vector<std::size_t> columns;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < names.size(); ++k, ++next) {
+    while (next < observables().size() && names[k] != observables()[next].name && is_later(observables()[next].name))
+      ++next;
     const std::string name = printable(std::string(names[k]), 40);
-    if (k == observables().size())
+    if (next == observables().size())
       csv.fail("", fmt::format("the header has more than {} columns: \"{}\" is not known", k, name), other_log);
-    if (names[k] != observables()[k].name)
-      csv.fail(
-          "",
-          fmt::format("column {} of the header is \"{}\", \"{}\" is needed", k + 1, name, observables()[k].name),
-          other_log);
+    if (names[k] != observables()[next].name)
+      csv.fail("",
+               fmt::format("column {} of the header is \"{}\", \"{}\" is needed", k + 1, name,
+                           observables()[next].name),
+               other_log);
+    columns.push_back(next);
   }
-  if (names.size() < observables().size())
+  while (next < observables().size() && is_later(observables()[next].name)) ++next;
+  if (next < observables().size())
     csv.fail("",
              fmt::format("the header ends after column {}, \"{}\" is needed next", names.size(),
-                         observables()[names.size()].name),
+                         observables()[next].name),
              other_log);
+  return columns;
 }
 
 }  // namespace
@@ -107,15 +118,16 @@ std::string log_line(const LogRow& row) {
 
 std::vector<LogRow> read_log(const std::string& path) {
   CsvReader csv(path, CsvReader::LastLine::may_be_cut_off);
-  read_header(csv, path);
+  const std::vector<std::size_t> columns = read_header(csv, path);
   std::vector<LogRow> rows;
-  while (csv.next()) rows.push_back(row_of(csv));
+  while (csv.next()) rows.push_back(row_of(csv, columns));
   return rows;
 }
 
 void check_log_header(const std::string& path) {
   CsvReader csv(path, CsvReader::LastLine::may_be_cut_off);
-  read_header(csv, path);
+  if (read_header(csv, path).size() < observables().size())
+    throw InputError({path, 1, ""}, "lacks columns that this version writes", other_log);
 }
 
 std::size_t column_of_log(const std::string& name, const InputError::Place& place) {

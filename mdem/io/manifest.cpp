@@ -27,6 +27,11 @@ void visit(M& m, const Visit& v) {
   v({"instructions", "", "instruction set, which `--instructions` takes to give the same bits elsewhere"},
     m.instructions);
   v({"device", "", "the device that moved the elements, of `--device`; empty: there was none"}, m.device);
+  v({"program", "", "name of the program"}, m.program);
+  v({"own_parts", "", "drives, loads, laws and kinds of this program alone that the run needs; may be empty"},
+    m.own_parts);
+  v({"own_forces", "", "forces of one's own, functions of Python, by their names; empty: there were none"},
+    m.own_forces);
   v({"threads", "", "threads"}, m.threads);
   v({"seed", "", "seed of the scene"}, m.seed);
   v({"scene_hash", "", "xxh64 of scene.toml"}, m.scene_hash);
@@ -102,7 +107,8 @@ Manifest read_manifest(const std::string& path) {
   const Json json = parse(path, read_file(path));
   Manifest manifest;
   visit(manifest, [&](const OutputColumn& key, auto& value) {
-    for (const char* later : {"grade", "instructions", "device"})  // not written by earlier versions
+    // Not written by earlier versions.
+    for (const char* later : {"grade", "instructions", "device", "program", "own_parts", "own_forces"})
       if (std::string(later) == key.name && !json.contains(key.name)) return;
     value = value_of<std::decay_t<decltype(value)>>(path, json, key.name);
   });

@@ -17,6 +17,9 @@ struct Manifest {
   std::string build_type;
   std::string instructions;
   std::string device;  // name of the device that moved the elements; empty: none
+  std::string program;     // its name
+  std::string own_parts;   // that the program has and the run needs, as own_parts_of_run() lists them; empty: none
+  std::string own_forces;  // of Python, as own_forces_in_words() lists them; empty: none
   int threads = 0;
   std::uint64_t seed = 0;
   std::string scene_hash;      // xxh64, hex

@@ -70,6 +70,7 @@ RunErrors::Value value_in(std::size_t k) {
 }  // namespace
 
 double WholeError::total() const {
+  if (without > 0) return not_known;
   return std::sqrt(statistics * statistics + numerics * numerics + parameters * parameters + potential * potential);
 }
 
@@ -82,13 +83,37 @@ NumericErrors::NumericErrors(const std::string& directory, NumericRuns runs, Run
     starts_.push_back(rows_beside(read_log(directory + "/" + folder + "/log.csv"), 1, log_));
 }
 
-WholeError NumericErrors::of(const RunErrors::Result& result,
-                             const std::function<void(WholeError&)>& blocks) const {
+WholeError NumericErrors::of(const RunErrors::Result& result, const Blocks& blocks) const {
+  std::vector<double> starts, refined;
+  for (const std::vector<LogRow>& log : starts_) starts.push_back(result(log));
+  for (const std::vector<LogRow>& log : refined_) refined.push_back(result(log));
+  return combined(result(log_), starts, refined, parameters_.empty() ? ResultError{} : parameters_.of(result), blocks);
+}
+
+WholeError NumericErrors::of_runs(const RunErrors::ResultOfRun& result, bool is_time) const {
+  std::vector<double> starts, refined;
+  int without = 0;
+  const RunErrors::ResultOfRun counted = [&](const std::string& folder) {
+    const double v = result(folder);
+    without += !std::isfinite(v);
+    return v;
+  };
+  for (const std::string& folder : runs_.starts) starts.push_back(counted(folder));
+  for (const NumericSource& s : runs_.sources) refined.push_back(counted(s.folder) / (is_time ? s.pace : 1));
+  const ResultError parameters = parameters_.empty() ? ResultError{} : parameters_.of_runs(counted);
+  WholeError e = combined(result(""), starts, refined, parameters, [](WholeError&) {});
+  e.without = without;
+  return e;
+}
+
+WholeError NumericErrors::combined(double value, const std::vector<double>& starts,
+                                   const std::vector<double>& refined, const ResultError& parameters,
+                                   const Blocks& blocks) const {
   WholeError e;
-  e.value = result(log_);
+  e.value = value;
   std::vector<double> values = {e.value};
-  for (const std::vector<LogRow>& log : starts_)
-    if (const double v = result(log); std::isfinite(v)) values.push_back(v);
+  for (const double v : starts)
+    if (std::isfinite(v)) values.push_back(v);
   double mean = 0, squares = 0;
   for (const double v : values) mean += v / static_cast<double>(values.size());
   for (const double v : values) squares += (v - mean) * (v - mean);
@@ -102,9 +127,9 @@ WholeError NumericErrors::of(const RunErrors::Result& result,
     largest = part;
     e.decides = name;
   };
-  for (std::size_t i = 0; i < refined_.size(); ++i) {
+  for (std::size_t i = 0; i < refined.size(); ++i) {
     const NumericSource& s = runs_.sources[i];
-    const double part = s.times * difference(result(refined_[i]), e.value);
+    const double part = s.times * difference(refined[i], e.value);
     const double scatter = s.times * std::sqrt(2.0) * e.statistics;
     e.parts.push_back(part);
     e.numerics = std::hypot(e.numerics, or_zero(part));
@@ -113,12 +138,11 @@ WholeError NumericErrors::of(const RunErrors::Result& result,
   }
   e.bound = bounds > certain;
   if (!parameters_.empty()) {
-    const ResultError p = parameters_.of(result);
-    e.parameters = or_zero(p.error);
-    e.potential = or_zero(p.potential);
+    e.parameters = or_zero(parameters.error);
+    e.potential = or_zero(parameters.potential);
     std::size_t most = 0;
-    for (std::size_t i = 0; i < p.parts.size(); ++i)
-      if (std::fabs(p.parts[i]) > std::fabs(p.parts[most])) most = i;
+    for (std::size_t i = 0; i < parameters.parts.size(); ++i)
+      if (std::fabs(parameters.parts[i]) > std::fabs(parameters.parts[most])) most = i;
     weigh(e.parameters, e.statistics, parameters_.sources()[most].name);
     weigh(e.potential, 0, "potential");
   }
@@ -170,9 +194,10 @@ NumericErrors read_numeric_errors(const std::string& run_directory, const std::v
   return {directory, std::move(runs), read_run_errors(run_directory, log), log};
 }
 
-std::string numeric_errors_json(const NumericErrors& errors, const std::vector<LogRow>& log) {
+std::string numeric_errors_json(const NumericErrors& errors, const std::vector<LogRow>& log,
+                                const std::vector<std::pair<std::string, WholeError>>& results) {
   const NumericRuns& runs = errors.runs();
-  Json sources = Json::array(), results = Json::object();
+  Json sources = Json::array(), at_the_end = Json::object(), came_of_it = Json::object();
   for (const NumericSource& s : runs.sources)
     sources.push_back({{"name", s.name},
                        {"folder", s.folder},
@@ -180,26 +205,34 @@ std::string numeric_errors_json(const NumericErrors& errors, const std::vector<L
                        {"pace", s.pace},
                        {"change", s.change},
                        {"remedy", s.remedy}});
+  const auto json_of = [&](const WholeError& e) {
+    Json parts = Json::object();
+    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[runs.sources[i].name] = number_or_null(e.parts[i]);
+    return Json{{"value", number_or_null(e.value)},
+                {"error", number_or_null(e.total())},
+                {"statistics", number_or_null(e.statistics)},
+                {"numerics", number_or_null(e.numerics)},
+                {"parameters", number_or_null(e.parameters)},
+                {"potential", number_or_null(e.potential)},
+                {"upper_bound", e.bound},
+                {"decides", e.decides},
+                {"parts", parts}};
+  };
   for (std::size_t k = 0; k < observables().size() && !log.empty(); ++k) {
     const std::string& name = observables()[k].name;
     if (is_time(name)) continue;
     const WholeError e = errors.at_end(value_in(k));
-    Json parts = Json::object();
-    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[runs.sources[i].name] = number_or_null(e.parts[i]);
-    results[name] = {{"value", number_or_null(e.value)},
-                     {"error", number_or_null(e.total())},
-                     {"statistics", number_or_null(e.statistics)},
-                     {"numerics", number_or_null(e.numerics)},
-                     {"parameters", number_or_null(e.parameters)},
-                     {"potential", number_or_null(e.potential)},
-                     {"upper_bound", e.bound},
-                     {"decides", e.decides},
-                     {"correlation_ps", number_or_null(e.correlation_ps)},
-                     {"needed_ps", number_or_null(e.needed_ps)},
-                     {"parts", parts}};
+    at_the_end[name] = json_of(e);
+    at_the_end[name]["correlation_ps"] = number_or_null(e.correlation_ps);
+    at_the_end[name]["needed_ps"] = number_or_null(e.needed_ps);
+  }
+  for (const auto& [name, error] : results) {
+    came_of_it[name] = json_of(error);
+    came_of_it[name]["runs_without"] = error.without;
   }
   return Json{{"format", numerics_format}, {"mean_ps", runs.mean_ps}, {"sources", sources},
-              {"starts", runs.starts},     {"remarks", runs.remarks}, {"at_the_end", results}}
+              {"starts", runs.starts},     {"remarks", runs.remarks}, {"results", came_of_it},
+              {"at_the_end", at_the_end}}
              .dump(1) +
          "\n";
 }

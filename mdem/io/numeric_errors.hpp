@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/log.hpp"
@@ -45,12 +46,13 @@ struct WholeError {
   double statistics = 0, numerics = 0, parameters = 0, potential = 0;
   std::vector<double> parts;  // parts of the numerics, by source
   bool bound = false;         // most of them is an upper bound
+  int without = 0;            // repeated runs that do not have the result; the error is then not known
   std::string decides;        // what is largest: "statistics", "potential", "elements", "GJ"; empty: nothing is
-  // Of a mean over time; nan: of none. needed_ps: that an error by blocks needs, where the time is too short.
+  // Correlation time of a mean; nan: it is no mean. needed_ps: time for an error by blocks, where the run is too short.
   double correlation_ps = std::numeric_limits<double>::quiet_NaN();
   double needed_ps = std::numeric_limits<double>::quiet_NaN();
 
-  double total() const;
+  double total() const;  // nan: not known
 };
 
 class NumericErrors {
@@ -67,9 +69,15 @@ class NumericErrors {
   WholeError of(std::size_t k, const Value& value) const;
   // Error of the result: of its mean over the last runs().mean_ps, or of its last row.
   WholeError at_end(const Value& value) const;
+  // Error of what came of the run, such as its largest torque. `is_time`: it is a time, which a run at half the rate
+  // has twice.
+  WholeError of_runs(const RunErrors::ResultOfRun& result, bool is_time) const;
 
  private:
-  WholeError of(const RunErrors::Result& result, const std::function<void(WholeError&)>& blocks) const;
+  using Blocks = std::function<void(WholeError&)>;
+  WholeError of(const RunErrors::Result& result, const Blocks& blocks) const;
+  WholeError combined(double value, const std::vector<double>& starts, const std::vector<double>& refined,
+                      const ResultError& parameters, const Blocks& blocks) const;
 
   NumericRuns runs_;
   RunErrors parameters_;
@@ -79,8 +87,10 @@ class NumericErrors {
 
 // errors/numerics.json in the directory of a run; empty where it is missing.
 NumericErrors read_numeric_errors(const std::string& run_directory, const std::vector<LogRow>& log);
-// Writes the file that read_numeric_errors() reads, with the errors of all observables at the end.
-std::string numeric_errors_json(const NumericErrors& errors, const std::vector<LogRow>& log);
+// Writes the file that read_numeric_errors() reads, with the errors of all observables at the end. `results`: errors
+// of what came of the run, by its name.
+std::string numeric_errors_json(const NumericErrors& errors, const std::vector<LogRow>& log,
+                                const std::vector<std::pair<std::string, WholeError>>& results);
 // As log.csv, with an error in the place of each value but those of step and time.
 std::string whole_errors_csv(const NumericErrors& errors, const std::vector<LogRow>& log,
                              const std::function<double(const WholeError&)>& which);

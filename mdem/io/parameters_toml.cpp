@@ -143,7 +143,7 @@ class Reader {
     for (const char* key : {"twist_per_length", "curvature"})
       if (t.has(key))
         throw t.error(key, "is not in the model: elements are straight at rest, and bend alike in all directions",
-                      "leave it out; a natural twist has no say in such a filament, a natural curvature cannot be had");
+                      "leave it out: a natural twist changes nothing where a filament bends alike in all directions");
   }
 
   // Bonds have one stiffness of bending. A filament with a natural twist, bent over many turns of it, has the

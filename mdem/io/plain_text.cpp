@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <sstream>
 
 #include "model/error.hpp"
 
@@ -24,12 +25,86 @@ std::size_t control_bytes(std::string_view text, std::size_t k) {
 
 bool is_word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
+std::size_t columns_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::size_t indent_of(std::string_view line) { return std::min(line.find_first_not_of(' '), line.size()); }
+
+// A list goes on behind its mark, other text below its first letter.
+std::size_t hanging_indent(std::string_view line) {
+  const std::size_t indent = indent_of(line);
+  return indent + (line.substr(indent, 2) == "- " ? 2 : 0);
+}
+
+// Where the last column begins that two spaces part from what is before, such as the meaning of an option.
+std::size_t last_column(std::string_view line) {
+  std::size_t column = hanging_indent(line);
+  for (std::size_t k = column + 2; k < std::min(line.size(), widest_line / 2); ++k)
+    if (line[k] != ' ' && line[k - 1] == ' ' && line[k - 2] == ' ') column = k;
+  return column;
+}
+
+std::string filled(const std::string& line, std::size_t indent) {
+  if (columns_of(line) <= widest_line) return line + "\n";
+  std::string text;
+  for (const std::string& part : lines_of(std::string_view(line).substr(indent), widest_line - indent))
+    text += (text.empty() ? line.substr(0, indent) : std::string(indent, ' ')) + part + "\n";
+  return text;
+}
+
 }  // namespace
 
 bool has_control_character(std::string_view text) {
   for (std::size_t k = 0; k < text.size(); ++k)
     if (control_bytes(text, k) > 0) return true;
   return false;
+}
+
+std::vector<std::string> lines_of(std::string_view words, std::size_t columns) {
+  std::vector<std::string> lines;
+  for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+    if (lines.empty() || columns_of(lines.back()) + 1 + columns_of(word) > columns)
+      lines.emplace_back(word);
+    else
+      lines.back() += " " + std::string(word);
+  }
+  return lines;
+}
+
+std::string within_width(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  for (std::string line; std::getline(lines, line);) out += filled(line, last_column(line));
+  if (text.empty() || text.back() != '\n') out.erase(out.find_last_not_of('\n') + 1);
+  return out;
+}
+
+std::string markdown_within_width(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out, paragraph;
+  bool code = false;
+  const auto close = [&] {
+    if (!paragraph.empty()) out += filled(paragraph, hanging_indent(paragraph));
+    paragraph.clear();
+  };
+  for (std::string line; std::getline(lines, line);) {
+    const std::string begin = line.substr(indent_of(line), 3);
+    const bool fence = begin == "```", item = begin.substr(0, 2) == "- ";
+    if (fence || code || begin.empty() || begin[0] == '|' || begin[0] == '#' || begin.substr(0, 2) == "$$") {
+      close();
+      out += line + "\n";
+      code = code != fence;
+    } else if (!paragraph.empty() && !item && indent_of(line) == hanging_indent(paragraph)) {
+      paragraph += " " + line.substr(indent_of(line));
+    } else {
+      close();
+      paragraph = line;
+    }
+  }
+  close();
+  return out;
 }
 
 std::string_view next_word(std::string_view& text) {
@@ -115,7 +190,7 @@ std::string lammps_quoted(const std::string& text) {
   if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
   for (const char quote : {'"', '\''})
     if (text.find(quote) == std::string::npos) return quote + text + quote;
-  throw InputError({text, 0, ""}, "holds both kinds of quotes, and LAMMPS could not be told its name",
+  throw InputError({text, 0, ""}, "has both kinds of quotes in its name, which LAMMPS then cannot read",
                    "rename it without them");
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ropewalk {
 
@@ -13,6 +14,15 @@ bool is_utf8(std::string_view text);
 
 // Takes the next word of a line off, with the spaces before it; empty: there is none.
 std::string_view next_word(std::string_view& text);
+
+// Columns of a terminal, which help and commented scenes fill.
+constexpr std::size_t widest_line = 120;
+// The words in lines of at most so many columns. A word that is longer has a line of its own.
+std::vector<std::string> lines_of(std::string_view words, std::size_t columns);
+// Each line that is wider than widest_line goes on below, as far in as its last column of words begins.
+std::string within_width(const std::string& text);
+// The same of Markdown, whose paragraphs are filled anew. Code, formulas, tables and headings stay as they are.
+std::string markdown_within_width(const std::string& text);
 
 // The number that a text begins with, behind spaces: with a decimal point, in every locale. `length`: of what was
 // read.

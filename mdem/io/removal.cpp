@@ -112,7 +112,7 @@ void make_work_folder(const std::string& path, const char* option) {
 
 void remove_work_folder(const std::string& path) {
   if (!has_work_mark(path)) return;
-  // The mark last: a process that is killed here leaves a directory that is known as its own.
+  // The mark is removed last: a process that is killed here leaves a directory that is known as its own.
   for (const auto& entry : fs::directory_iterator(path))
     if (entry.path().filename() != work_mark) remove_whole(entry.path().string());
   std::error_code ignored;

@@ -61,11 +61,22 @@ ResultError RunErrors::of(std::size_t k, const Value& value) const {
 }
 
 ResultError RunErrors::of(const Result& result) const {
+  return combined(result(log_), [&](std::size_t i, bool plus) {
+    return result(plus ? runs_[i].first : runs_[i].second);
+  });
+}
+
+ResultError RunErrors::of_runs(const ResultOfRun& result) const {
+  return combined(result(""), [&](std::size_t i, bool plus) {
+    return result(plus ? sources_[i].plus : sources_[i].minus);
+  });
+}
+
+ResultError RunErrors::combined(double middle, const std::function<double(std::size_t, bool)>& result) const {
   ResultError out;
-  const double middle = result(log_);
+  out.value = middle;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    const double plus = result(runs_[i].first),
-                 minus = sources_[i].minus.empty() ? 2 * middle - plus : result(runs_[i].second);
+    const double plus = result(i, true), minus = sources_[i].minus.empty() ? 2 * middle - plus : result(i, false);
     const double scale = 0.5 * sources_[i].sigma / sources_[i].step;
     double part = scale * (plus - minus);
     const double bent = scale * std::fabs(plus + minus - 2 * middle);
@@ -149,9 +160,10 @@ RunErrors read_run_errors(const std::string& run_directory, const std::vector<Lo
 }
 
 std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log,
+                            const std::vector<std::pair<std::string, ResultError>>& results,
                             const std::vector<std::string>& without_error,
                             const std::vector<std::string>& not_varied) {
-  Json sources = Json::array(), results = Json::object();
+  Json sources = Json::array(), at_the_end = Json::object(), came_of_it = Json::object();
   for (const ErrorSource& s : errors.sources())
     sources.push_back({{"name", s.name},
                        {"key", s.key},
@@ -159,21 +171,25 @@ std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& 
                        {"step", s.step},
                        {"plus", s.plus},
                        {"minus", s.minus}});
+  const auto json_of = [&](const ResultError& e) {
+    Json parts = Json::object();
+    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[errors.sources()[i].name] = number(e.parts[i]);
+    return Json{{"value", number(e.value)},
+                {"standard_error", number(e.error)},
+                {"potential_error", number(e.potential)},
+                {"linear", e.linear},
+                {"parts", parts}};
+  };
   for (std::size_t k = 0; k < observables().size() && !log.empty(); ++k) {
     const std::string& name = observables()[k].name;
     if (is_clock(name)) continue;
-    const ResultError e = errors.of(log.size() - 1, column(k));
-    Json parts = Json::object();
-    for (std::size_t i = 0; i < e.parts.size(); ++i) parts[errors.sources()[i].name] = number(e.parts[i]);
-    results[name] = {{"value", number(log.back().values()[k])},
-                     {"standard_error", number(e.error)},
-                     {"potential_error", number(e.potential)},
-                     {"moves_by", number(movement(log, column(k)))},
-                     {"linear", e.linear},
-                     {"parts", parts}};
+    at_the_end[name] = json_of(errors.of(log.size() - 1, column(k)));
+    at_the_end[name]["moves_by"] = number(movement(log, column(k)));
   }
+  for (const auto& [name, error] : results) came_of_it[name] = json_of(error);
   return Json{{"format", format_name},          {"sources", sources},       {"correlation", errors.correlation()},
-              {"without_error", without_error}, {"not_varied", not_varied}, {"at_the_end", results}}
+              {"without_error", without_error}, {"not_varied", not_varied}, {"results", came_of_it},
+              {"at_the_end", at_the_end}}
              .dump(1) +
          "\n";
 }

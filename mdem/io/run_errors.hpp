@@ -36,12 +36,15 @@ struct ResultError {
   double potential = 0;  // the error by the spread between potentials
   bool linear = true;
   std::vector<double> parts;  // g_i
+  double value = 0;
 };
 
 class RunErrors {
  public:
   using Value = std::function<double(const LogRow&)>;
   using Result = std::function<double(const std::vector<LogRow>&)>;  // result of a log
+  // Result of the run in this folder of `errors`, which need not have the rows of the others; "": of the run itself.
+  using ResultOfRun = std::function<double(const std::string& folder)>;
 
   RunErrors() = default;
   // The logs of the runs are read from `directory`. Where they have other rows than `log`, the last ones are
@@ -55,8 +58,12 @@ class RunErrors {
   // The error of one value of row k of the log.
   ResultError of(std::size_t k, const Value& value) const;
   ResultError of(const Result& result) const;
+  ResultError of_runs(const ResultOfRun& result) const;
 
  private:
+  // `result` of source i, raised or lowered.
+  ResultError combined(double middle, const std::function<double(std::size_t i, bool plus)>& result) const;
+
   std::vector<ErrorSource> sources_;
   std::vector<std::vector<double>> correlation_;
   std::vector<LogRow> log_;
@@ -77,8 +84,10 @@ bool is_plain_name(const std::string& folder);
 // errors/errors.json in the directory of a run; none where it is missing.
 RunErrors read_run_errors(const std::string& run_directory, const std::vector<LogRow>& log);
 // Writes the file that read_run_errors reads, with the errors of all observables at the end.
-// `without_error`, `not_varied`: numbers that are not among the sources, in words.
+// `results`: errors of what came of the run, by its name. `without_error`, `not_varied`: numbers that are not among
+// the sources, in words.
 std::string run_errors_json(const RunErrors& errors, const std::vector<LogRow>& log,
+                            const std::vector<std::pair<std::string, ResultError>>& results,
                             const std::vector<std::string>& without_error,
                             const std::vector<std::string>& not_varied);
 // As log.csv, with an error in the place of each value but those of step and time: `error` or `potential`.

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/measured.hpp"
+#include "io/pull.hpp"
+
 namespace ropewalk {
 namespace {
 
@@ -60,15 +63,21 @@ void add_torque(const std::vector<LogRow>& log, std::size_t within, RunResults& 
 }
 
 void add_strength(const std::vector<LogRow>& log, RunResults& r) {
-  const LogRow* most = strongest_row(log);
-  if (!most) return;
-  double shortest = (*most)["ends_strain"];
-  for (const LogRow* row = log.data(); row < most; ++row) shortest = std::fmin(shortest, (*row)["ends_strain"]);
-  const double strain = (*most)["ends_strain"];
+  const std::optional<LoggedPull> pull = pull_of(log);
+  if (!pull) return;
+  const LogRow& most = log[pull->most];
+  double shortest = most["ends_strain"];
+  for (std::size_t k = 0; k < pull->most; ++k) shortest = std::fmin(shortest, log[k]["ends_strain"]);
+  const double strain = most["ends_strain"];
   if (!(strain > drawn_from || strain - shortest > drawn_again)) return;
-  r.strength = (*most)["stress_GPa"];
-  r.strength_N_per_tex = (*most)["specific_stress_N_per_tex"];
-  r.strength_strain = (*most)["ends_strain"];
+  if (!pull->no_strength.empty()) {
+    r.no_strength = fmt::format("Stress came to {:.3g} GPa, which is no strength: {}.", pull->strength,
+                                pull->no_strength);
+    return;
+  }
+  r.strength = pull->strength;
+  r.strength_N_per_tex = most["specific_stress_N_per_tex"];
+  r.strength_strain = pull->strain;
   r.stress_fell = log.back()["stress_GPa"] < still_there * r.strength;
 }
 
@@ -84,6 +93,11 @@ const ResultColumn all_results[] = {
      [](const RunResults& r) { return r.torque_max_deg; }},
     {{"torque_within_nN_nm", "nN nm", "the largest before a limit of the model was passed"},
      [](const RunResults& r) { return r.torque_within; }},
+    {{"first_limit_deg", "deg",
+      "rotation of the upper end when a limit of the model was passed first, of a rope that is twisted"},
+     [](const RunResults& r) { return r.first_limit_deg; }},
+    {{"bending_max_nN_nm", "nN nm", "largest moment across z on an end, of a rope that is bent"},
+     [](const RunResults& r) { return r.bending_max; }},
     {{"first_break_ps", "ps", "when the first tube broke"}, [](const RunResults& r) { return r.first_break_ps; }},
     {{"first_break_deg", "deg", "rotation of the upper end when the first tube broke"},
      [](const RunResults& r) { return r.first_break_deg; }},
@@ -91,50 +105,74 @@ const ResultColumn all_results[] = {
      [](const RunResults& r) { return static_cast<double>(r.tubes_broken); }},
     {{"strength_GPa", "GPa", "largest stress, of a rope whose ends move apart"},
      [](const RunResults& r) { return r.strength; }},
-    {{"strength_strain", "", "strain of the ends at that stress"},
+    {{"strength_strain", "", "strain of the ends since the pull began, at that stress"},
      [](const RunResults& r) { return r.strength_strain; }},
     {{"stored_at_limit_MJ_per_kg", "MJ/kg",
       "stored energy over mass in the last row before a limit was passed; without one, the largest"},
      [](const RunResults& r) { return r.stored_at_limit; }},
 };
 
-std::string at_words(double deg, double ps) {
-  return std::fabs(deg) >= turned_from ? fmt::format("at {:.4g}°", deg) : fmt::format("at {:.4g} ps", ps);
-}
+// The sentences of one run. Numbers with a known error have it, and as many digits as it allows.
+class ResultWords {
+ public:
+  ResultWords(const RunResults& r, const std::vector<double>& errors) : r_(r), errors_(errors) {}
 
-std::string torque_sentence(const RunResults& r) {
-  std::string text =
-      fmt::format("Torque {} {:.4g} nN nm{} {}", r.torque_fell ? "passed its maximum," : "rose to", r.torque_max,
-                  r.torque_fell ? "," : "", at_words(r.torque_max_deg, r.torque_max_ps));
-  if (r.first_limit.empty() || r.torque_max_ps < r.first_limit_ps) return text + ".";
-  text += fmt::format(", beyond {} from {:.4g} ps on", r.first_limit, r.first_limit_ps);
-  if (std::isfinite(r.torque_within)) text += fmt::format("; before, it reached {:.4g} nN nm", r.torque_within);
-  return text + ".";
-}
+  std::string torque() const {
+    std::string text = fmt::format("Torque {} {} nN nm{} {}", r_.torque_fell ? "passed its maximum," : "rose to",
+                                   number("torque_max_nN_nm", 4), r_.torque_fell ? "," : "",
+                                   at(r_.torque_max_deg, "torque_max_at_deg", r_.torque_max_ps, ""));
+    if (r_.first_limit.empty() || r_.torque_max_ps < r_.first_limit_ps) return text + ".";
+    text += fmt::format(", beyond {} from {:.4g} ps on", r_.first_limit, r_.first_limit_ps);
+    if (std::fabs(r_.first_limit_deg) >= turned_from) text += fmt::format(" ({:.4g}°)", r_.first_limit_deg);
+    if (std::isfinite(r_.torque_within))
+      text += fmt::format("; before, it reached {} nN nm", number("torque_within_nN_nm", 4));
+    return text + ".";
+  }
+  std::string bending() const {
+    return fmt::format("The bending moment {} {} nN nm{} at {:.4g} ps.",
+                       r_.bending_fell ? "passed its maximum," : "rose to", number("bending_max_nN_nm", 4),
+                       r_.bending_fell ? "," : "", r_.bending_max_ps);
+  }
+  std::string first_break() const {
+    const TubeBreak& first = r_.first_break;
+    std::string text =
+        r_.tubes_broken == 1 ? "One tube broke" : fmt::format("{} tubes broke, the first", r_.tubes_broken);
+    text += fmt::format(" {}: tube {}, element {}{}",
+                        at(r_.first_break_deg, "first_break_deg", r_.first_break_ps, "first_break_ps"), first.tube,
+                        first.element, first.held_by.empty() ? "" : ", at " + first.held_by);
+    if (!r_.first_limit.empty() && r_.first_break_ps >= r_.first_limit_ps)
+      text += fmt::format(", beyond {}", r_.first_limit);
+    return text + ".";
+  }
+  std::string strength() const {
+    return fmt::format("Stress {} {} GPa ({:.3g} N/tex){} at a strain of {}.",
+                       r_.stress_fell ? "passed its maximum," : "rose to", number("strength_GPa", 3),
+                       r_.strength_N_per_tex, r_.stress_fell ? "," : "", number("strength_strain", 3));
+  }
+  std::string stored() const {
+    const std::string energy = number("stored_at_limit_MJ_per_kg", 3);
+    return r_.first_limit.empty()
+               ? fmt::format("The rope stored up to {} MJ/kg.", energy)
+               : fmt::format("When {} was passed, the rope stored {} MJ/kg.", r_.first_limit, energy);
+  }
 
-std::string bending_sentence(const RunResults& r) {
-  return fmt::format("The bending moment {} {:.4g} nN nm{} at {:.4g} ps.",
-                     r.bending_fell ? "passed its maximum," : "rose to", r.bending_max, r.bending_fell ? "," : "",
-                     r.bending_max_ps);
-}
+ private:
+  std::string number(const std::string& column, int digits) const {
+    std::size_t k = 0;
+    while (all_results[k].column.name != column) ++k;
+    const double value = all_results[k].value(r_);
+    return k < errors_.size() && errors_[k] > 0 ? measured_text(value, errors_[k])
+                                                : fmt::format("{:.{}g}", value, digits);
+  }
+  // `ps_column`: empty, where no column has this time.
+  std::string at(double deg, const char* deg_column, double ps, const std::string& ps_column) const {
+    if (std::fabs(deg) >= turned_from) return fmt::format("at {}°", number(deg_column, 4));
+    return fmt::format("at {} ps", ps_column.empty() ? fmt::format("{:.4g}", ps) : number(ps_column, 4));
+  }
 
-std::string break_sentence(const RunResults& r) {
-  const TubeBreak& first = r.first_break;
-  std::string text =
-      r.tubes_broken == 1 ? "One tube broke" : fmt::format("{} tubes broke, the first", r.tubes_broken);
-  text += fmt::format(" {}{}: tube {}, element {}{}", r.tubes_broken == 1 ? "" : "",
-                      at_words(r.first_break_deg, r.first_break_ps), first.tube, first.element,
-                      first.held_by.empty() ? "" : ", at " + first.held_by);
-  if (!r.first_limit.empty() && r.first_break_ps >= r.first_limit_ps)
-    text += fmt::format(", beyond {}", r.first_limit);
-  return text + ".";
-}
-
-std::string strength_sentence(const RunResults& r) {
-  return fmt::format("Stress {} {:.3g} GPa ({:.3g} N/tex){} at a strain of {:.3g}.",
-                     r.stress_fell ? "passed its maximum," : "rose to", r.strength, r.strength_N_per_tex,
-                     r.stress_fell ? "," : "", r.strength_strain);
-}
+  const RunResults& r_;
+  const std::vector<double>& errors_;
+};
 
 }  // namespace
 
@@ -156,6 +194,17 @@ std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log) {
     return [held](const LogRow& r) { return r[held]; };
   }
   return [=](const LogRow& r) { return 0.5 * (r[upper] + r[lower]); };
+}
+
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log, const InputError::Place& place) {
+  if (name == "torque_nN_nm")
+    return {"torque", "nN nm",
+            "torque about z that twists the rope, mean over both ends where both are held, and over the time between "
+            "two rows",
+            false, torque_of(log)};
+  const std::size_t k = column_of_log(name, place);
+  const Observable& o = observables()[k];
+  return {quantity_of(o), o.unit, o.meaning, o.whole, [k](const LogRow& row) { return row.values()[k]; }};
 }
 
 double rotation_at(const std::vector<LogRow>& log, double time) {
@@ -180,6 +229,9 @@ RunResults run_results(const std::vector<LogRow>& log, const std::vector<LimitRe
   const std::size_t within = rows_within(log, limits);
   add_bending(log, r);
   add_torque(log, within, r);
+  if (const LimitRecord* first = first_limit(limits);
+      first && std::isfinite(r.torque_max) && (first->passed_at_ps > 0 || first->passed_at_step == 0))
+    r.first_limit_deg = rotation_at(log, first->passed_at_ps);
   add_strength(log, r);
   if (!breaks.empty()) {
     r.first_break = *std::min_element(breaks.begin(), breaks.end(),
@@ -230,18 +282,17 @@ std::string result_cells(const RunResults& results) {
   return text;
 }
 
-std::vector<std::string> result_sentences(const RunResults& r) {
+std::vector<std::string> result_sentences(const RunResults& r, const std::vector<double>& errors) {
+  const ResultWords words(r, errors);
   std::vector<std::string> out;
-  if (std::isfinite(r.bending_max)) out.push_back(bending_sentence(r));
-  if (std::isfinite(r.torque_max)) out.push_back(torque_sentence(r));
-  if (r.tubes_broken > 0) out.push_back(break_sentence(r));
-  if (std::isfinite(r.strength)) out.push_back(strength_sentence(r));
+  if (std::isfinite(r.bending_max)) out.push_back(words.bending());
+  if (std::isfinite(r.torque_max)) out.push_back(words.torque());
+  if (r.tubes_broken > 0) out.push_back(words.first_break());
+  if (std::isfinite(r.strength)) out.push_back(words.strength());
+  if (!r.no_strength.empty()) out.push_back(r.no_strength);
   if (r.links_broken > 0)
     out.push_back(fmt::format("{:.0f} of {:.0f} links broke.", r.links_broken, r.links_formed));
-  if (r.stored_at_limit > stored_from)
-    out.push_back(r.first_limit.empty() ? fmt::format("The rope stored up to {:.3g} MJ/kg.", r.stored_at_limit)
-                                        : fmt::format("When {} was passed, the rope stored {:.3g} MJ/kg.",
-                                                      r.first_limit, r.stored_at_limit));
+  if (r.stored_at_limit > stored_from) out.push_back(words.stored());
   return out;
 }
 

@@ -19,6 +19,16 @@ std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitR
 // end.
 std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log);
 
+// What curves show: a column of the log, or torque_nN_nm, which is torque_of().
+struct CurveColumn {
+  std::string quantity, unit, meaning;
+  bool whole = false;  // integers
+  std::function<double(const LogRow&)> value;
+};
+// `log`: of the run. Throws InputError where there is no such column.
+CurveColumn curve_column(const std::string& name, const std::vector<LogRow>& log,
+                         const InputError::Place& place = {});
+
 // Degrees: the rotation of the upper end at this time, ps, between two rows; NaN where there are none.
 double rotation_at(const std::vector<LogRow>& log, double time);
 
@@ -33,6 +43,7 @@ struct RunResults {
 
   std::string first_limit;  // key of the limit that was passed first; empty: none was
   double first_limit_ps = none;
+  double first_limit_deg = none;  // rotation then, of a rope that is twisted
   double torque_max = none;                              // nN nm: the largest absolute torque_of() of a row
   double torque_max_deg = none, torque_max_ps = none;    // rotation and time of that row
   bool torque_fell = false;                              // below 95 % of it by the end
@@ -42,8 +53,9 @@ struct RunResults {
   double first_break_deg = none, first_break_ps = none;  // first break of a tube
   TubeBreak first_break;
   int tubes_broken = 0;
-  double strength = none, strength_N_per_tex = none,
-         strength_strain = none;  // GPa: largest stress; where ends are drawn apart
+  // GPa, N/tex, strain since the pull began (io/pull.hpp): at the largest stress; where ends are drawn apart.
+  double strength = none, strength_N_per_tex = none, strength_strain = none;
+  std::string no_strength;  // the largest stress, and why it is none; empty: it is, or nothing is drawn apart
   bool stress_fell = false;
   double stored_at_limit = none;  // MJ/kg: of the last row before the first limit; without one, the largest
   double links_formed = 0, links_broken = 0, bonds_broken = 0;  // counts in the last row
@@ -60,7 +72,8 @@ std::string result_cells(const RunResults& results);
 // The same by name; NaN: the run has no such value.
 std::vector<double> result_values(const RunResults& results);
 
-// A sentence each: bending moment, torque and first break, strength, stored energy.
-std::vector<std::string> result_sentences(const RunResults& results);
+// A sentence each: bending moment, torque and first break, strength, stored energy. `errors`: of result_values(), nan
+// where none is known; empty: none is.
+std::vector<std::string> result_sentences(const RunResults& results, const std::vector<double>& errors = {});
 
 }  // namespace ropewalk

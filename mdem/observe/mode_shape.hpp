@@ -19,7 +19,7 @@ struct ModeShares {
 
 struct ModeShape {
   ModeShares shares;
-  // Of the sideways motion of the centre line: turns about its chord (helix_of()), and half waves in the
+  // Sideways motion of the centre line: its turns about the chord (helix_of()), and its half waves in the
   // plane in which it moves most; NaN where nothing moves sideways.
   double windings = 0, half_waves = 0;
 

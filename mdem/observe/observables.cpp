@@ -18,7 +18,7 @@ using units::degree;
 
 constexpr double rounding = 1e-4;  // relative to the potential energies: pairs are in single precision
 
-// Of the rope whose mass counts.
+// Energies of what is measured: of one period of a slice, else of all.
 const Energies& energies(const M& m) {
   return m.account.period ? m.account.period->potential : m.account.potential;
 }
@@ -203,6 +203,11 @@ std::vector<Observable>& table() {
       {"specific_stress_N_per_tex", "N/tex", "the same tension over the mass per length of the rope without load",
        Group::load, [](const M& m) { return end_tension(m) / m.size.mass_per_length; }},
   };
+  const auto add = [&](Observable o) {
+    if (std::any_of(entries.begin(), entries.end(), [&](const Observable& other) { return other.name == o.name; }))
+      throw std::invalid_argument("a force term has the column " + o.name + ", and this name is taken");
+    entries.push_back(std::move(o));
+  };
   // Kinds register before main() begins, in no certain order with those who ask for the table there.
   static std::size_t terms = 0;
   for (; terms < term_kinds().size(); ++terms) {
@@ -212,12 +217,12 @@ std::vector<Observable>& table() {
       return at == m.account.terms.end() ? TermReading() : at->second;
     };
     if (!kind.energy.empty())
-      entries.push_back({kind.name + "_eV", "eV", kind.energy, Group::energy,
-                         [reading](const M& m) { return reading(m).energy; }, real, kind.name + " energy"});
+      add({kind.name + "_eV", "eV", kind.energy, Group::energy, [reading](const M& m) { return reading(m).energy; },
+           real, kind.name + " energy"});
     for (const TermColumn& c : kind.account)
-      entries.push_back({c.name, c.unit, c.meaning, Group::energy,
-                         [reading, value = c.value](const M& m) { return reading(m).account.*value; },
-                         c.value == &TermAccount::events || c.value == &TermAccount::begun});
+      add({c.name, c.unit, c.meaning, Group::energy,
+           [reading, value = c.value](const M& m) { return reading(m).account.*value; },
+           c.value == &TermAccount::events || c.value == &TermAccount::begun});
   }
   return entries;
 }

@@ -1,17 +1,23 @@
 // What the start and the loads of a scene ask of its tubes together, with their signs, at any time of the run.
 //
-// Where both ends are kept, a rope is as long and as wound as they ask for: by what it is at the start, and by what
-// they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its own bonds
-// bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between what they were
-// and nothing, and the larger of both sums counts. Everything is even along the rope, and the rope as a whole winds
-// no farther than its tubes twist. Ends that come nearer press the tubes up to the strain at which a column of the
-// rope's width buckles, and bend them from there on; tubes that begin straight and cold may stay straight, and are
-// pressed all the way as well. These are upper estimates of motions without shocks.
+// Where both ends are kept, a rope is as long and as wound as they ask for: by what it is at the start, and by
+// what they have moved since. Where a force or a couple acts, a tube comes to the strain or twist at which its
+// own bonds bear it (tube_law.hpp). The strain of the start is then gone; its twist and winding lie between
+// what they were and nothing, and the larger of both sums counts. Everything is even along the rope, and the
+// rope as a whole winds no farther than its tubes twist. Where their spins are relaxed it winds until the
+// tubes, which slide on one another, bear the couple by their bending. A rope whose length is free and that
+// winds draws its outer tubes out and presses its inner ones as long as they do not slide (rope_section.hpp).
+// Ends that come nearer press the tubes up to the strain at which a column of the rope's width buckles, and
+// bend them from there on; tubes that begin straight and cold may stay straight, and are pressed all the way as
+// well. A force that acts at once counts twice: what it moves goes as far again beyond its rest. These are
+// upper estimates of motions without other shocks.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "plan/rope_section.hpp"
+#include "plan/term_pulls.hpp"
 #include "plan/tube_law.hpp"
 #include "scene/prepare.hpp"
 #include "sim/dynamics/end_drives.hpp"
@@ -46,18 +52,39 @@ class DemandsAhead {
   void add_times(const Schedule& course);
   double turned(double time) const;  // rad/nm, since the start
   double axial(std::size_t axis, double time) const;
+  double axial_inside(std::size_t axis, double time) const;  // the part of loads that are on no end
+  double bent_by_force(std::size_t axis, double time) const;  // eV, the bending moment of the forces along this axis
   double sideways(std::size_t axis, double time) const;
+  double force_of(const Schedule& course, double time) const;
+  double at_once(double force) const { return moves_ ? force : 0; }  // what a force from the start on adds to itself
+  void read_inner(const Prepared& p);
+  RopeSection::Tubes clings() const {
+    return length_kept_ ? RopeSection::Tubes::cling_at_kept_length : RopeSection::Tubes::cling;
+  }
+  double clinging(double couple, double more) const;  // rad/nm: winding of a rope whose tubes do not slide
   void add(const At& what, Demands& out) const;
 
   TubeLaw law_;
   BondStiffness bond_;
   EndDrives drives_;
+  RopeSection section_;
+  TermPulls terms_;
+  int type_ = 0;
   std::array<std::array<Schedule, 6>, 2> loads_;  // of each tube, by end and axis
   Schedule turned_apart_, drawn_apart_;           // of the upper end against the lower one
   std::array<Schedule, 2> moved_aside_;           // likewise, along x and y
-  std::vector<LoadEffect> inner_;                 // of loads on elements that are no ends
+  // A load on elements that are no ends.
+  struct Inner {
+    LoadEffect does;
+    double elements = 1;    // largest number in one tube
+    double from_lower = 0;  // nm, along the tube: of their middle
+  };
+  std::vector<Inner> inner_;
   double length_ = 0, period_ = 0, rope_radius_ = 0, column_ = 0, pressure_per_slope4_ = 0;
-  bool length_kept_ = false, keeps_tilt_ = false, upright_ = true, straight_ = true;
+  bool length_kept_ = false, turn_kept_ = false, relaxes_spins_ = false, winds_freely_ = false,
+       ends_inside_ = false;  // of tubes, in a slice: nothing but contact turns or draws one
+  bool moves_ = true, keeps_tilt_ = false, upright_ = true, straight_ = true;
+  std::array<std::array<bool, 6>, 2> kept_ = {};  // by end and axis
   int tubes_ = 0;
   double warm_curvature_ = 0, warm_twist_ = 0;
   // The start.
@@ -65,8 +92,5 @@ class DemandsAhead {
   double bent_ = 0, winding_ = 0;  // 1/nm, beside that of the winding (rad/nm) of the rope
   std::vector<double> times_;
 };
-
-// nm: distance of the farthest tube from the line through the mean of all, at the start.
-double rope_radius_of(const Prepared& prepared);
 
 }  // namespace ropewalk

@@ -10,27 +10,6 @@
 namespace ropewalk {
 namespace {
 
-// Twist phi (rad/nm) of a rope in equilibrium, if `moment` M (eV) acts on each tube, rho being the distance of a
-// tube from the axis: M = GJ phi + EA Var(rho^2) phi^3/2, with the mean of rho^4 for the variance where the length
-// is held.
-double resting_twist(const Prepared& p, double moment, bool relaxes_spins, bool length_held) {
-  const BondStiffness& k = p.topology.types[0].bond;
-  double mean = 0, mean2 = 0;
-  for (int t = 0; t < p.topology.tubes(); ++t) {
-    const double rho2 =
-        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
-    mean += rho2 / p.topology.tubes();
-    mean2 += rho2 * rho2 / p.topology.tubes();
-  }
-  const double cubic = relaxes_spins ? 0 : 0.5 * k.stretch * (mean2 - (length_held ? 0 : mean * mean));
-  double low = 0, high = moment / k.twist;
-  for (int step = 0; step < 60; ++step) {
-    const double phi = 0.5 * (low + high);
-    (k.twist * phi + cubic * phi * phi * phi < moment ? low : high) = phi;
-  }
-  return low;
-}
-
 // The longest of several courses tells when a limit is passed.
 void add_course(const Schedule& course, SceneFeatures& f) {
   if (course.reaches() > f.course.reaches()) f.course = course;
@@ -62,7 +41,11 @@ void add_end_loads(const EndDrives& drives, const Prepared& p, SceneFeatures& f)
     }
   if (!(couple > 0)) return;
   const std::optional<EndMoment> moment = end_moment(drives);
-  f.turn += resting_twist(p, couple, moment && moment->relaxes_spins, f.length_held);
+  const bool relaxes = moment && moment->relaxes_spins;
+  const RopeSection::Tubes tubes = relaxes         ? RopeSection::Tubes::slide
+                                   : f.length_held ? RopeSection::Tubes::cling_at_kept_length
+                                                   : RopeSection::Tubes::cling;
+  f.turn += RopeSection(p).winding_under(couple, p.topology.types[0].bond, relaxes, tubes);
 }
 
 // Displacements and rotations of one end against the other.

@@ -12,6 +12,7 @@
 #include "plan/sliding_rope.hpp"
 #include "scene/watch.hpp"
 #include "sim/dynamics/end_drives.hpp"
+#include "sim/forces/force_term.hpp"
 
 namespace ropewalk {
 namespace {
@@ -93,8 +94,9 @@ struct Ahead {
 };
 
 // `end`: ps, of the run, which loads may outlast.
-Ahead ahead_of(const DemandsAhead& demands, double end, const TubeType& type, double Limits::*kind, double limit) {
-  const auto value = [&](double time) { return expected(demands.at(time), type, kind); };
+template <class Value>
+Ahead ahead_of(const DemandsAhead& demands, double end, const Value& of, double limit) {
+  const auto value = [&](double time) { return of(demands.at(time)); };
   Ahead out{value(0), 0, 0};
   double before = 0;
   for (const double asked : demands.times()) {
@@ -133,7 +135,60 @@ std::vector<std::size_t> types_with_tubes(const Topology& topology) {
   return {all.begin(), all.end()};
 }
 
+// As far as tubes bear it.
+double expected_of(const Demands& f, const TubeType& type, const ForceTerm::Strength& strength, double Limits::*limit) {
+  const double value = expected(f, type, limit);
+  return limit == &Limits::strain ? std::min(value, strength.strongest) : value;
+}
+
+ForceTerm::Strength strength_of(const Prepared& p, std::size_t type) {
+  ForceTerm::Strength out;
+  for (const auto& term : p.interaction.terms) {
+    const ForceTerm::Strength here = term->strength(static_cast<int>(type));
+    out.weakest = std::min(out.weakest, here.weakest);
+    out.strongest = std::min(out.strongest, here.strongest);
+    out.moment = std::min(out.moment, here.moment);
+  }
+  return out;
+}
+
+// When the tubes of a type break, and by what.
+struct Breaks {
+  double from = std::numeric_limits<double>::infinity();  // ps
+  std::string by;
+};
+
+Breaks breaks_ahead(const DemandsAhead& demands, double end, const TubeType& type,
+                    const ForceTerm::Strength& strength) {
+  Breaks out;
+  const TubeLaw law(type);
+  const auto look = [&](const auto& of, double limit, const std::string& by) {
+    if (!std::isfinite(limit)) return;
+    const Ahead ahead = ahead_of(demands, end, of, limit);
+    const double from = ahead.start > limit ? 0 : ahead.passes;
+    if (ahead.largest > limit && from < out.from) out = {from, by};
+  };
+  look([](const Demands& f) { return f.strain; }, strength.weakest,
+       fmt::format("strained by {:.3g}", strength.weakest));
+  look([&](const Demands& f) { return law.moment(std::min(f.curvature, 0.5 * units::pi / type.element_length)); },
+       strength.moment, fmt::format("bent with {:.3g} nN nm", strength.moment / units::nN_nm));
+  if (std::isfinite(strength.weakest) || std::isfinite(strength.moment))
+    look([&](const Demands& f) { return type.element_length * f.twist; }, (1 - 1e-6) * 0.5 * units::pi,
+         "twisted by 90 deg");
+  return out;
+}
+
 }  // namespace
+
+std::string not_foreseen(const Scene& scene, const Prepared& p) {
+  std::set<std::string> what;
+  for (const auto& term : p.interaction.terms)
+    if (const std::string words = term->not_foreseen(); !words.empty()) what.insert(words);
+  for (const auto& load : p.loads)
+    if (!load->effect()) what.insert("what loads of your own do");
+  if (scene.start.temperature > 0 || scene.bath()) what.insert("the peaks of heat");
+  return what.empty() ? "" : fmt::format("Limits are foreseen without {}.", fmt::join(what, ", "));
+}
 
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   std::vector<std::string> out;
@@ -141,7 +196,24 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
   const std::vector<std::size_t> types = types_with_tubes(p.topology);
   const double end = scene.run.mode == RunOptions::Mode::relax ? std::numeric_limits<double>::infinity() : p.duration;
   std::vector<DemandsAhead> demands;
-  for (const std::size_t type : types) demands.emplace_back(scene, p, type);
+  std::vector<ForceTerm::Strength> strengths;
+  for (const std::size_t type : types) {
+    demands.emplace_back(scene, p, type);
+    strengths.push_back(strength_of(p, type));
+  }
+  Breaks first;
+  std::string of;
+  for (std::size_t k = 0; k < types.size(); ++k)
+    if (const Breaks breaks = breaks_ahead(demands[k], end, p.topology.types[types[k]], strengths[k]);
+        breaks.from < first.from) {
+      first = breaks;
+      of = types.size() > 1 ? " of " + scene.sets[types[k]].name : "";
+    }
+  if (std::isfinite(first.from))
+    out.push_back(fmt::format("The load may break tubes{}, {}: a bond breaks once it is {}.", of,
+                              first.from > at_once ? fmt::format("from about {:.3g} ps on", first.from)
+                                                   : "from the start on",
+                              first.by));
   for (const auto& [asked, member] : all_asked()) {
     const LimitKind& kind = *asked;
     const auto limit_of = [&, own = member](const Limits& of) {
@@ -153,7 +225,10 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
     for (std::size_t k = 0; k < types.size(); ++k) {
       const double here = limit_of(limits[types[k]]);
       if (here <= 0 || kind.limit == &Limits::shock) continue;
-      const Ahead of_type = ahead_of(demands[k], end, p.topology.types[types[k]], member, here);
+      const auto value = [&, own = member](const Demands& f) {
+        return expected_of(f, p.topology.types[types[k]], strengths[k], own);
+      };
+      const Ahead of_type = ahead_of(demands[k], end, value, here);
       if (k > 0 && !(of_type.largest / here > ahead.largest / limit_of(limits[type]))) continue;
       ahead = of_type;
       type = types[k];
@@ -193,11 +268,15 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
   const SceneFeatures f = features_of(scene, p);
   if (!f.turned_between || !(f.turning > 0)) return std::nullopt;
   const double length = p.topology.groups.images > 0 ? p.topology.groups.period : f.length;
+  const auto first_of = [&](int t) {
+    return Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]);
+  };
+  Vector3 axis = Vector3::Zero();  // a rope may stand anywhere
+  for (int t = 0; t < p.topology.tubes(); ++t) axis += first_of(t) / p.topology.tubes();
   double twist = 0, inertia = 0, second = 0, fourth = 0, stretch = 0;
   for (int t = 0; t < p.topology.tubes(); ++t) {
     const TubeType& type = p.topology.type_of(t);
-    const double rho2 =
-        Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])]).head<2>().squaredNorm();
+    const double rho2 = (first_of(t) - axis).head<2>().squaredNorm();
     const double part = part_of_strand(p.topology, t);
     twist += part * type.bond.twist;
     inertia += part * (type.mass * rho2 + type.inertia) / type.element_length;
@@ -214,18 +293,25 @@ std::optional<QuasiStatic> quasi_static(const Scene& scene, const Prepared& p) {
 }
 
 std::string words_of(const QuasiStatic& q) {
-  constexpr double enough = 0.05;
+  constexpr double enough = 0.05, waves = 10;
+  const double travel = q.slice ? 0.5 * q.travel : q.travel;
+  if (travel > q.time)
+    return fmt::format(
+        "A twist wave needs {:.3g} ps {} and the ramp lasts {:.3g} ps: one part turns before another feels it, and "
+        "the torque is that of the wave. Ramp over {:.2g} ps or more.",
+        travel, q.slice ? "from the ends of the slice to its middle" : "from end to end", q.time,
+        std::max(waves * travel, q.time * q.error / enough));
   const std::string percent = fmt::format(q.error < 0.1 ? "{:.2g}" : "{:.0f}", 100 * q.error);
   std::string text = q.slice ? fmt::format(
                                    "A twist wave needs {:.3g} ps from the ends of the slice to its middle and the "
                                    "ramp lasts {:.3g} ps: "
                                    "the torque may be up to {} % off its quasi-static value.",
-                                   0.5 * q.travel, q.time, percent)
+                                   travel, q.time, percent)
                              : fmt::format(
                                    "A twist wave needs {:.3g} ps from end to end and the ramp lasts {:.3g} ps: the "
                                    "torque of either end "
                                    "may be up to {} % off its quasi-static value.",
-                                   q.travel, q.time, percent);
+                                   travel, q.time, percent);
   if (q.error > enough)
     text += fmt::format(" Ramp over {:.3g} ps for {:.2g} %.", q.time * q.error / enough, 100 * enough);
   if (q.drag > 0.01)

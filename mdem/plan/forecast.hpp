@@ -11,8 +11,11 @@
 namespace ropewalk {
 
 // A sentence for each, by the upper estimates of plan/demands.hpp: what the scene begins with, and what the load
-// brings it to, with the time when it gets there.
+// brings it to, with the time when it gets there. Before them, when tubes break by [failure].
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
+
+// What of this scene limits_ahead() leaves out, as a sentence; empty: nothing.
+std::string not_foreseen(const Scene& scene, const Prepared& prepared);
 
 // Where a moment on each tube makes a helix of the straight rope, by plan/sliding_rope.hpp. None: it does not, or
 // the theory is not for this scene.

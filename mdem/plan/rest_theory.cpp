@@ -47,7 +47,7 @@ RestTheory rest_theory(const Scene& scene, const Prepared& p) {
   if (!load->balanced || !load->on_all) refuse(scene, "", "its ends have no opposite couples on all tubes");
   if (ends.otherwise_driven || !ends.tilts || ends.sideways == EndFreedom::Sideways::held || !ends.one_element)
     refuse(scene, "", "its ends are held or driven by more than couples");
-  if (load->relaxes_spins) refuse(scene, "twist.geometric_only", "has states of rest of its own");
+  if (load->relaxes_spins) refuse(scene, "twist.geometric_only", "takes the twist of the tubes away, which this theory does not know");
   if (!load->course.stays()) refuse(scene, "", "its ends lose the moment under which it rests");
   const TubeType& tube = p.topology.type_of(0);
   double moment_of_area = 0;  // S

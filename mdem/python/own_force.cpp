@@ -13,7 +13,8 @@ class OwnTerm : public ForceTerm {
   explicit OwnTerm(std::shared_ptr<OwnForce> force) : force_(std::move(force)) {}
 
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<OwnTerm>(*this); }
-  std::string name() const override { return "own"; }
+  std::string name() const override { return "own_forces"; }
+  std::string not_foreseen() const override { return "what a force of your own does"; }
   void gather(const State& state) override {
     if (auto found = force_->at(state)) now_ = std::move(*found);
   }
@@ -86,14 +87,21 @@ void OwnForce::add_term_of(const std::shared_ptr<OwnForce>& force, Interaction& 
   if (*force->has_energy_) add_term(std::make_shared<OwnTerm>(force), interaction);
 }
 
-std::vector<std::shared_ptr<const Drive>> OwnForce::drives(const std::vector<py::function>& functions,
-                                                           const State& start) {
-  std::vector<std::shared_ptr<const Drive>> out;
+std::vector<OwnForceOfRun> OwnForce::named(const std::vector<std::shared_ptr<OwnForce>>& forces) {
+  std::vector<OwnForceOfRun> out;
+  for (const auto& force : forces)
+    out.push_back({force->function_.attr("__name__").cast<std::string>(), *force->has_energy_, nullptr});
+  return out;
+}
+
+std::vector<OwnForceOfRun> OwnForce::of_run(const std::vector<py::function>& functions, const State& start) {
+  std::vector<std::shared_ptr<OwnForce>> forces;
   for (const py::function& function : functions) {
-    const std::shared_ptr<OwnForce> force = make(function);
-    force->at(start);
-    out.push_back(std::make_shared<OwnDrive>(force));
+    forces.push_back(make(function));
+    forces.back()->at(start);
   }
+  std::vector<OwnForceOfRun> out = named(forces);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k].drive = std::make_shared<OwnDrive>(forces[k]);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "python/module.hpp"
-#include "scene/drive.hpp"
+#include "run/own_forces.hpp"
 #include "sim/dynamics/loads.hpp"
 #include "sim/state/interaction.hpp"
 #include "sim/state/state.hpp"
@@ -28,9 +28,10 @@ class OwnForce {
   // work counts as supplied. `start`: the first state that it sees.
   static void add(const std::shared_ptr<OwnForce>& force, const State& start, Interaction& interaction,
                   LoadsAndConstraints& loads);
-  // As drives of a scene, which last as long as its runs. `start`: the first state that they see.
-  static std::vector<std::shared_ptr<const Drive>> drives(const std::vector<py::function>& functions,
-                                                          const State& start);
+  // With drives of a scene, which last as long as its runs. `start`: the first state that they see.
+  static std::vector<OwnForceOfRun> of_run(const std::vector<py::function>& functions, const State& start);
+  // As a run would have them, without drives. They have been called.
+  static std::vector<OwnForceOfRun> named(const std::vector<std::shared_ptr<OwnForce>>& forces);
   // Only that part of it which is a force term, and that which is a load.
   static void add_term_of(const std::shared_ptr<OwnForce>& force, Interaction& interaction);
   static void add_load(const std::shared_ptr<OwnForce>& force, LoadsAndConstraints& loads);

@@ -131,7 +131,10 @@ void go(const Asked& asked, Begin begin) {
     if (result.end == RunEnd::failed)
       listener.tell(fmt::format("state written to {}", result.directory.failed_state()));
     if (result.end == RunEnd::broken_off)
-      listener.tell(fmt::format("ended at step {}; resume {} goes on", result.steps, result.directory.path));
+      listener.tell(asked.forces.empty()
+                        ? fmt::format("ended at step {}; resume {} goes on", result.steps, result.directory.path)
+                        : fmt::format("ended at step {}; ropewalk.resume(\"{}\", forces=...) goes on", result.steps,
+                                      result.directory.path));
     if (result.end == RunEnd::not_relaxed || result.end == RunEnd::at_limit || result.end == RunEnd::wall_time)
       listener.tell(result.remedy.empty() ? result.reason : result.reason + "; " + result.remedy);
   }
@@ -142,15 +145,15 @@ void go(const Asked& asked, Begin begin) {
                      "resume it to write them");
 }
 
-std::vector<std::shared_ptr<const Drive>> own_drives(const Asked& asked, Scene scene) {
+std::vector<OwnForceOfRun> own_forces(const Asked& asked, Scene scene) {
   if (asked.forces.empty()) return {};
-  return OwnForce::drives(asked.forces, prepare(scene).state);
+  return OwnForce::of_run(asked.forces, prepare(scene).state);
 }
 
 void run(const SceneHandle& scene, const std::string& out, bool force, const Asked& asked) {
   auto settings = settings_of<RunSettings>(asked);
   settings.force = force;
-  settings.own_drives = own_drives(asked, scene.scene());
+  settings.own_forces = own_forces(asked, scene.scene());
   go(asked, [&](RunListener& listener) {
     if (!asked.instructions.empty() && !use_instructions(asked.instructions))
       throw InputError({"", 0, "instructions"}, fmt::format("there is no \"{}\" here", asked.instructions),
@@ -162,7 +165,7 @@ void run(const SceneHandle& scene, const std::string& out, bool force, const Ask
 void resume(const std::string& directory, bool accept_changes, const Asked& asked) {
   auto settings = settings_of<ResumeSettings>(asked);
   settings.accept_changes = accept_changes;
-  if (!asked.forces.empty()) settings.own_drives = own_drives(asked, read_run_scene({directory}));
+  if (!asked.forces.empty()) settings.own_forces = own_forces(asked, read_run_scene({directory}));
   go(asked, [&](RunListener& listener) { return resume_run({directory}, settings, listener); });
 }
 

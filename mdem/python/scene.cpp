@@ -2,6 +2,7 @@
 
 #include "plan/forecast.hpp"
 #include "python/arrays.hpp"
+#include "scene/missing_forces.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/state_files.hpp"
 
@@ -70,6 +71,8 @@ void bind_scene(py::module_& m) {
       .def_property_readonly(
           "mass", [](const SceneHandle& s) { return of_tubes(s, [](const TubeType& t) { return t.mass; }); })
       .def_property_readonly("element_length", [](const SceneHandle& s) { return s.scene().element_length; })
+      .def("refuse_missing_forces",
+           [](const SceneHandle& s) { refuse_missing_forces(s.scene().missing_forces, s.scene().path); })
       .def("notes", notes_of)
       .def("start", start_of);
 }

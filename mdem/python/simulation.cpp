@@ -32,7 +32,9 @@ Simulation simulation_with(const Model& model, const std::vector<std::shared_ptr
   if (own.empty()) return start(model.scene, model.prepared);
   Prepared with = model.prepared;
   for (const auto& force : own) OwnForce::add(force, with.state, with.interaction, with.loads);
-  return start(model.scene, with);
+  Scene scene = model.scene;
+  scene.missing_forces.clear();
+  return start(scene, with);
 }
 
 }  // namespace
@@ -238,6 +240,7 @@ void SteppedScene::restore(const std::string& bytes) {
 void SteppedScene::restore_run(const std::string& dir) {
   simulation();
   const RunCheckpoint c = read_checkpoint({dir});
+  refuse_other_forces(c.origin.own_forces, own_forces_in_words(OwnForce::named(own_)), dir);
   try {
     go_to(c.simulation, nullptr);
   } catch (const std::runtime_error& e) {

@@ -269,7 +269,7 @@ class Formula {
     return row;
   }
 
-  // Of ASCII the digits alone.
+  // A number, or one letter or sign beyond ASCII.
   std::string number_or_letter() {
     only_words_ = false;
     const std::size_t from = at_;

@@ -1,6 +1,7 @@
 #include "report/load_tests.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,17 @@ Mean mean_of(const std::vector<LoadTest>& tests, Value value) {
   return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : NAN};
 }
 
+bool has_errors(const LoadTestGroup& group) {
+  return group.tests.size() == 1 && !group.tests.front().errors.empty();
+}
+
+// The k-th value, with the error of a single run where it is known.
+Mean mean_of_value(const LoadTestGroup& group, std::size_t k) {
+  Mean mean = mean_of(group.tests, [k](const LoadTest& t) { return t.values[k]; });
+  if (has_errors(group)) mean.error = group.tests.front().errors[k];
+  return mean;
+}
+
 int followed(const LoadTestGroup& group) {
   return static_cast<int>(
       std::count_if(group.tests.begin(), group.tests.end(), [](const LoadTest& t) { return t.to_half; }));
@@ -51,6 +63,15 @@ std::vector<LimitRecord> all_limits(const LoadTestGroup& group) {
   std::vector<LimitRecord> all;
   for (const LoadTest& t : group.tests) all.insert(all.end(), t.limits.begin(), t.limits.end());
   return all;
+}
+
+// Why runs of a group have no first value, each reason once.
+std::string why_none(const LoadTestGroup& group) {
+  std::vector<std::string> reasons;
+  for (const LoadTest& t : group.tests)
+    if (!t.why_none.empty() && std::find(reasons.begin(), reasons.end(), t.why_none) == reasons.end())
+      reasons.push_back(t.why_none);
+  return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 std::string title_of(const LoadTestKind& kind, const std::string& x) {
@@ -76,19 +97,23 @@ ScatterChart chart_of(const LoadTestKind& kind, const std::vector<LoadTestGroup>
       line = chart.lines.end() - 1;
       line->bars = true;
     }
-    const Mean at = mean_at(g, x), drawn = mean_of(g.tests, [](const LoadTest&t) { return t.values.front(); });
+    const Mean at = mean_at(g, x), drawn = mean_of_value(g, 0);
+    if (!std::isfinite(drawn.value)) continue;
     line->x.push_back(at.value);
     line->y.push_back(drawn.value);
     line->error.push_back(drawn.error);
   }
-  const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1; };
+  const auto one_seed = [](const LoadTestGroup& g) { return g.tests.size() == 1 && !has_errors(g); };
   if (std::any_of(groups.begin(), groups.end(), one_seed))
     chart.note = std::all_of(groups.begin(), groups.end(), one_seed) ? "one seed: no error" : "no bar: one seed";
   const auto beyond =
       std::count_if(groups.begin(), groups.end(), [](const LoadTestGroup& g) { return first_limit(all_limits(g)); });
-  if (beyond > 0)
-    chart.note += fmt::format("{}{} of {} points passed a limit of the model", chart.note.empty() ? "" : "; ", beyond,
-                              groups.size());
+  const auto note = [&](const std::string& words) { chart.note += (chart.note.empty() ? "" : "; ") + words; };
+  if (beyond > 0) note(fmt::format("{} of {} points passed a limit of the model", beyond, groups.size()));
+  const auto none = std::count_if(groups.begin(), groups.end(),
+                                  [](const LoadTestGroup& g) { return !std::isfinite(mean_of_value(g, 0).value); });
+  if (none > 0) note(fmt::format("{} of {} points without {} are left out", none, groups.size(), kind.drawn));
+  if (!kind.left_out.empty()) note(kind.left_out);
   const std::vector<ChartLine> measured = chart.lines;
   for (const auto& [level, name] : kind.levels) {
     ChartLine line{name, {}, {}, 5, true};
@@ -119,15 +144,16 @@ std::string load_tests_csv(const LoadTestKind& kind, const std::vector<LoadTestG
   const bool turns = kind.yarn_diameter > 0;
   std::string text = "run,replicates,to_half," + x + (turns ? ",turns_per_m" : "");
   for (const OutputColumn& c : kind.columns) text += fmt::format(",{0},{0}_standard_error", c.name);
-  text += "," + column_names(limit_columns()) + "\n";
+  text += "," + column_names(limit_columns()) + ",why_none\n";
   for (const LoadTestGroup& g : groups) {
     text += fmt::format("\"{}\",{},{},{:.6g}", g.name, g.tests.size(), followed(g), mean_at(g, x).value);
     if (turns) text += fmt::format(",{:.6g}", turns_per_m(kind, g).value);
     for (std::size_t k = 0; k < kind.columns.size(); ++k) {
-      const Mean m = mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; });
+      const Mean m = mean_of_value(g, k);
       text += fmt::format(",{:.6g},{:.3g}", m.value, m.error);
     }
-    text += "," + limit_cells(all_limits(g)) + "\n";
+    const std::string why = why_none(g);
+    text += "," + limit_cells(all_limits(g)) + "," + (why.empty() ? "" : "\"" + why + "\"") + "\n";
   }
   return text;
 }
@@ -141,13 +167,12 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
                             const std::string& x, const std::string& lines, Figures& figures) {
   std::string html =
       heading(kind.heading) + paragraph(kind.words) +
-      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th><th>" +
-      escape_markup(column_axis(x).quantity) + "</th>";
+      "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th>run</th><th>to half</th>" + head_cell(x);
   if (kind.yarn_diameter > 0)
     html += fmt::format("<th>turns per metre of a yarn of {:.4g} µm</th>", 1e-3 * kind.yarn_diameter);
   std::vector<OutputColumn> columns = limit_columns();
   columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
-  for (const OutputColumn& c : columns) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
+  for (const OutputColumn& c : columns) html += head_cell(c.name, c.meaning);
   html += "</tr></thead><tbody>\n";
   for (const LoadTestGroup& g : groups) {
     const auto cell = [&](const Mean& m) {
@@ -162,14 +187,20 @@ std::string load_tests_part(const LoadTestKind& kind, const std::vector<LoadTest
                 ? fmt::format("<td>{}</td><td>{}</td>", escape_markup(first->key), number_text(first->passed_at_ps))
                 : "<td>–</td><td>–</td>";
     for (std::size_t k = 0; k < kind.columns.size(); ++k)
-      cell(mean_of(g.tests, [k](const LoadTest& t) { return t.values[k]; }));
+      cell(mean_of_value(g, k));
     html += "</tr>\n";
   }
   html += "</tbody></table></div>\n";
+  for (const LoadTestGroup& g : groups)
+    if (const std::string why = why_none(g); !why.empty())
+      html += paragraph(fmt::format("Of {} there is no {}: {}.", escape_markup(g.name), kind.drawn, why));
+  if (!kind.left_out.empty()) html += paragraph("Left out: " + kind.left_out + ".");
   const std::string svg = scatter_svg(chart_of(kind, groups, x));
   if (svg.empty()) return html;
   std::string caption =
       title_of(kind, x) + ". Bars: one standard error to either side, over runs that differ in their seed.";
+  if (std::any_of(groups.begin(), groups.end(), has_errors))
+    caption += " That of a single run is the one that <code>ropewalk errors</code> found.";
   if (!lines.empty()) caption += " Lines: " + escape_markup(lines) + ".";
   if (x == "beta_deg" && kind.yarn_law)
     caption += " Dashed: the law of yarns of long fibres, cos² of the angle of the outermost tubes.";

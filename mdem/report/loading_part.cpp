@@ -220,8 +220,8 @@ std::string pressure_figure(const ReportInput& in, Figures& figures) {
          figures.caption(
              "Pressure of the contacts on a tube in the middle of the rope, averaged over the tubes that start at "
              "the same distance from the axis; negative where tubes are drawn apart. Tension of the outer tubes "
-             "presses the inner ones together. Twist also does the opposite: the section of a tube that leans is "
-             "longer than wide, so that tubes around the axis need more room and draw the inner ones apart.") +
+             "presses the inner ones together. Another effect of twist draws them apart: a tube that leans has a "
+             "section that is longer than wide, so that the tubes around the axis need more room.") +
          data_table(columns, "ropewalk observe RUN --tubes has the pressure on every tube in the last frame.") +
          "</figure>\n";
 }

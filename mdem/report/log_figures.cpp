@@ -12,8 +12,8 @@
 namespace ropewalk {
 
 ChartAxis column_axis(const std::string& column) {
-  const Observable& o = observables()[index_of_observable(column)];
-  return {quantity_of(o), o.unit, o.whole};
+  const CurveColumn c = curve_column(column, {});
+  return {c.quantity, c.unit, c.whole};
 }
 
 LogValue logged(const std::string& column) {

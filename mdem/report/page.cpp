@@ -33,12 +33,6 @@ std::string with_powers(std::string text) {
   return escape_markup(text);
 }
 
-// Decimals that show two digits of the error.
-int decimals_of_error(double error) { return std::max(0, 1 - static_cast<int>(std::floor(std::log10(error)))); }
-
-// Nothing of the value is left at these decimals. An error that exceeds a value is no reason to hide it.
-bool vanishes(double value, int decimals) { return std::fabs(value) < 0.5 * std::pow(10.0, -decimals); }
-
 // The value with as many digits as its error allows, or with seven digits where it has no error.
 std::string value_text(const Quantity& q) {
   if (std::isnan(q.value)) return "–";
@@ -86,7 +80,12 @@ details{font-size:.82rem;margin-top:.5em}
 summary{cursor:pointer;color:var(--soft);width:max-content;max-width:100%}
 details p{margin:.5em 0;color:var(--soft)}
 .legend>span{display:inline-block;margin-right:1.1em}
-.scroll{overflow-x:auto}.wide svg{min-width:640px}a{color:var(--c0)}
+.scroll{overflow-x:auto;margin-bottom:1em}
+@media screen{.scroll{background:linear-gradient(90deg,var(--paper) 30%,transparent) 0 0/40px 100% local no-repeat,
+linear-gradient(270deg,var(--paper) 30%,transparent) 100% 0/40px 100% local no-repeat,
+linear-gradient(90deg,var(--rule),transparent) 0 0/12px 100% no-repeat,
+linear-gradient(270deg,var(--rule),transparent) 100% 0/12px 100% no-repeat}}
+.wide svg{min-width:640px}a{color:var(--c0)}
 math{font-family:"STIX Two Math","STIX Math","Latin Modern Math","Cambria Math","DejaVu Math TeX Gyre",math;
 font-size:1.05em;padding:.13em 0}
 mfrac>*{font-size:.84em}
@@ -95,9 +94,11 @@ th,td{padding:3px 14px 3px 0;text-align:left;vertical-align:top;border-bottom:1p
 thead th{color:var(--soft);font-weight:600;border-bottom-color:var(--soft)}
 .numbers th,.numbers td,.number{text-align:right!important}
 .numbers td,.numbers th{white-space:nowrap}
+.numbers thead th,.numbers td.soft{white-space:normal}.numbers thead th{vertical-align:bottom}
+.numbers td.soft{min-width:8em;text-align:left!important}
 .facts tbody th{font-weight:600;padding-right:26px;white-space:nowrap}
 .facts td{overflow-wrap:anywhere}
-.facts td.number{overflow-wrap:normal}
+.facts td.number,.whole td{overflow-wrap:normal!important}
 @media(max-width:600px){.facts td{min-width:6em}.facts td.number{min-width:0}
 .facts:not(.numbers) tbody th{white-space:normal;overflow-wrap:anywhere;padding-right:12px}}
 @page{margin:13mm 14mm}
@@ -110,7 +111,7 @@ figure,.pair figure{margin-bottom:.5em}figcaption{font-size:.9em;line-height:1.2
 .row{grid-template-columns:repeat(6,1fr);gap:8px}.cut svg{width:100%;height:auto;margin-bottom:2px}.keys{margin-top:6px}
 details{display:none}.scroll{overflow:visible}.wide svg{min-width:0}.numbers td,.numbers th{white-space:normal}
 table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1px 8px 1px 0}tr{break-inside:avoid}
-.columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}
+figure>.chart{width:auto;max-height:60mm}.columns{columns:2;column-gap:18px}.columns table{font-size:.68em}.columns th,.columns td{padding-right:5px}
 .columns td:not(:first-child){overflow-wrap:normal}}
 )";
 
@@ -119,6 +120,12 @@ table{font-size:.74em;line-height:1.2;width:100%}th,td,.facts tbody th{padding:1
 std::string paragraph(const std::string& html) { return "<p>" + html + "</p>\n"; }
 
 std::string heading(const std::string& text) { return "<h2>" + escape_markup(text) + "</h2>\n"; }
+
+std::string head_cell(const std::string& name, const std::string& meaning) {
+  std::string text;
+  for (const char c : escape_markup(name)) text += c == '_' ? "_<wbr/>" : std::string(1, c);
+  return (meaning.empty() ? "<th>" : fmt::format("<th title=\"{}\">", escape_markup(meaning))) + text + "</th>";
+}
 
 std::string Figures::caption(const std::string& html) {
   return fmt::format("<figcaption><b>Figure {}.</b> {}</figcaption>\n", ++number_, html);
@@ -138,7 +145,7 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
   html += paragraph(rows.size() < n ? fmt::format("{} of {} rows. {}", rows.size(), n, source)
                                     : fmt::format("All {} rows. {}", n, source));
   html += "<div class=\"scroll\"><table class=\"numbers\"><thead><tr>";
-  for (const TableColumn& c : columns) html += "<th>" + escape_markup(c.title) + "</th>";
+  for (const TableColumn& c : columns) html += head_cell(c.title);
   html += "</tr></thead><tbody>\n";
   std::vector<int> decimals;
   for (const TableColumn& c : columns) decimals.push_back(decimals_of(c));
@@ -149,16 +156,6 @@ std::string data_table(const std::vector<TableColumn>& columns, const char* sour
     html += "</tr>\n";
   }
   return html + "</tbody></table></div></details>\n";
-}
-
-std::string measured_text(double value, double error) {
-  if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.7g}", value);
-  const int decimals = decimals_of_error(error);
-  if (vanishes(value, decimals)) return fmt::format("0 ± {:.2g}", error);
-  const std::string number = fmt::format("{:.{}f}", value, decimals);
-  // Small numbers of small errors are clearer with a power of ten.
-  if (decimals > max_decimals) return fmt::format("{:.10g} ± {:.2g}", value, error);
-  return fmt::format("{} ± {:.{}f}", number, error, decimals);
 }
 
 namespace {

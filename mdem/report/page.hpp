@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/measured.hpp"
 #include "model/parameters.hpp"
 #include "report/svg.hpp"
 
@@ -12,6 +13,9 @@ namespace ropewalk {
 
 std::string paragraph(const std::string& html);
 std::string heading(const std::string& text);
+
+// The name of a column, which a narrow table may break behind each underscore; with its meaning for who points at it.
+std::string head_cell(const std::string& name, const std::string& meaning = "");
 
 // The number of the next figure.
 class Figures {
@@ -31,10 +35,6 @@ struct TableColumn {
 };
 // A folded table under a figure, of at most 60 rows. `source` says where to find all rows.
 std::string data_table(const std::vector<TableColumn>& columns, const char* source);
-
-// "740.836 ± 0.052": as many digits as two of the error allow, seven where there is no error, and "0 ± 0.0002" for
-// less than half of an error.
-std::string measured_text(double value, double error);
 
 // A number of a set with its errors: "1518.960 ± 0.037 ± 205 (potential)", that of the fit and the spread between
 // potentials. `and_unit`: with its unit, where it has one.

@@ -35,34 +35,30 @@ std::string text_at(double x, double y, const std::string& text, bool bold = fal
                      escape_markup(text));
 }
 
-std::string name_of(const std::string& column) {
-  const std::string name = quantity_of(observables()[index_of_observable(column)]);
-  return name == "vdw" ? "van der Waals" : name;
-}
-
 std::string chart_of(const PlateInput& in, const std::vector<std::string>& columns, double width) {
   const Clock clock = clock_of(in.log);
   ScatterChart scatter;
   LineChart& chart = scatter.chart;
-  const Observable& first = observables()[index_of_observable(columns.front())];
+  std::vector<CurveColumn> drawn;
+  for (const std::string& column : columns) drawn.push_back(curve_column(column, in.log));
+  const CurveColumn& first = drawn.front();
   chart.title = columns.front();
   const std::string& over = in.x.empty() ? clock.column : in.x;
   chart.x = in.x.empty() ? clock.axis : column_axis(in.x);
-  chart.y = {columns.size() == 1  ? name_of(columns.front())
-             : first.unit == "eV" ? "energy"
-                                  : name_of(columns.front()),
-             first.unit, first.whole};
+  chart.y = {columns.size() > 1 && first.unit == "eV" ? "energy" : first.quantity, first.unit, first.whole};
   chart.width = width;
   chart.height = chart_height;
-  const std::vector<double> x = values_of(in.log, logged(over));
+  const LogValue x_of = curve_column(over, in.log).value;
+  const std::vector<double> x = values_of(in.log, x_of);
   const std::size_t within = mark_beyond(in.log, in.limits, x, chart);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     chart.lines.push_back(
-        {name_of(columns[k]), x, values_of(in.log, logged(columns[k])), static_cast<int>(k) % categorical_colours});
+        {drawn[k].quantity, x, values_of(in.log, drawn[k].value), static_cast<int>(k) % categorical_colours});
     if (within < x.size()) chart.lines.back().beyond = within;
-    if (!in.errors.empty()) chart.lines.back().error = values_of(in.errors, logged(columns[k]));
+    if (!in.errors.empty()) chart.lines.back().error = values_of(in.errors, drawn[k].value);
     scatter.labels.emplace_back();
   }
+  if (!in.errors.empty()) chart.note = "band: one standard error";
   // The states, on the first curve.
   ChartLine marks{"states", {}, {}, 5};
   marks.points = true;
@@ -72,8 +68,8 @@ std::string chart_of(const PlateInput& in, const std::vector<std::string>& colum
       return std::fabs(a["time_ps"] - in.views[k].time_ps) < std::fabs(b["time_ps"] - in.views[k].time_ps);
     });
     if (at == in.log.end()) continue;
-    marks.x.push_back((*at)[over]);
-    marks.y.push_back((*at)[columns.front()]);
+    marks.x.push_back(x_of(*at));
+    marks.y.push_back(first.value(*at));
     letters.push_back(letter(k));
   }
   chart.lines.push_back(marks);

@@ -47,7 +47,11 @@ std::vector<std::string> terms_in(const std::vector<LogRow>& log) {
       columns.push_back(column);
   return columns;
 }
-std::string term_of(const std::string& column) { return column.substr(0, column.rfind("_eV")); }
+std::string term_of(const std::string& column) {
+  std::string name = column.substr(0, column.rfind("_eV"));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 Panel other_energies(const ReportInput& in) {
   const bool contacts = in.tubes > 1;
@@ -330,7 +334,9 @@ std::string lead(const ReportInput& in) {
         "What comes after does not describe real tubes; it is dotted and hatched in the figures. "
         "<a href=\"#limits\">Every limit that was passed</a>. ";
   }
-  for (const std::string& sentence : result_sentences(in.results)) html += escape_markup(sentence) + " ";
+  std::vector<double> errors;
+  for (const WholeError& e : in.result_errors) errors.push_back(e.total());
+  for (const std::string& sentence : result_sentences(in.results, errors)) html += escape_markup(sentence) + " ";
   return html;
 }
 
@@ -487,17 +493,23 @@ std::string whole_errors(const ReportInput& in) {
       "errors-statistics.csv, errors-numerics.csv, errors.csv and errors-potential.csv have every row. What the "
       "model itself leaves out is not in them.");
   std::vector<ReportFact> facts;
-  for (std::size_t k = 0; k < observables().size(); ++k) {
-    const Observable& o = observables()[k];
-    if (o.group == ObservableGroup::time || o.name == "time_step_fs") continue;
-    const WholeError e = in.whole.at_end([k](const LogRow& row) { return row.values()[k]; });
-    if (!std::isfinite(e.value) || e.total() <= 1e-9 * std::max(1.0, std::fabs(e.value))) continue;
+  const auto add = [&](const std::string& name, const std::string& unit, const WholeError& e) {
+    if (!std::isfinite(e.value) || e.total() <= 1e-9 * std::max(1.0, std::fabs(e.value))) return;
     std::string remark = fmt::format("statistics {}, numerics {}{}, parameters {}, potential {}; {} decides",
                                      number_text(e.statistics, 2), e.bound ? "≤ " : "", number_text(e.numerics, 2),
                                      number_text(e.parameters, 2), number_text(e.potential, 2), e.decides);
+    if (e.without > 0) remark = fmt::format("{} of the repeated runs have no such value", e.without);
     if (std::isfinite(e.correlation_ps))
       remark += fmt::format("; correlated over {}", picoseconds(e.correlation_ps));
-    facts.push_back({o.name, fmt::format("{} {}", measured_text(e.value, e.total()), o.unit), remark});
+    facts.push_back({name, fmt::format("{} {}", measured_text(e.value, e.total()), unit), remark});
+  };
+  const std::vector<OutputColumn> results = result_columns();
+  for (std::size_t k = 0; k < in.result_errors.size(); ++k)
+    add(results[k].name, results[k].unit, in.result_errors[k]);
+  for (std::size_t k = 0; k < observables().size(); ++k) {
+    const Observable& o = observables()[k];
+    if (o.group == ObservableGroup::time || o.name == "time_step_fs") continue;
+    add(o.name, o.unit, in.whole.at_end([k](const LogRow& row) { return row.values()[k]; }));
   }
   html += facts_part(facts);
   std::string words;
@@ -522,6 +534,13 @@ std::string carried_errors(const ReportInput& in) {
       "errors-potential.csv have all rows. What the model itself leaves out is not in them, nor are time step, "
       "length of the elements, rate of loading and noise.");
   std::vector<ReportFact> facts;
+  const std::vector<OutputColumn> results = result_columns();
+  for (std::size_t k = 0; k < in.result_errors.size(); ++k)
+    if (const WholeError& e = in.result_errors[k]; std::isfinite(e.value) && e.total() > 0)
+      facts.push_back({results[k].name,
+                       fmt::format("{} ± {} ± {} {}", number_text(e.value, 6), number_text(e.parameters, 2),
+                                   number_text(e.potential, 2), results[k].unit),
+                       ""});
   for (std::size_t k = 0; k < observables().size(); ++k) {
     const Observable& o = observables()[k];
     if (o.name == "step" || o.name == "time_ps") continue;
@@ -617,7 +636,7 @@ bool is_zero(const ReportInput& in, const Panel& panel) {
   });
 }
 
-// Of a rope. Charts that would show a line at zero are named instead.
+// The part on the shape of a rope. Charts that would show a line at zero are named instead.
 std::string shape_part(const ReportInput& in, const std::vector<ReportSection>& sections, Figures& figures) {
   std::vector<std::string> charts, zero;
   const auto add = [&](const Panel& panel) {

@@ -56,6 +56,7 @@ struct ReportInput {
   Equilibria equilibria;  // equilibria of a run with load steps
   LimitsFile watched;     // empty if the run has no limits.json
   RunResults results;
+  std::vector<WholeError> result_errors;  // errors of result_values(); empty: not known
 
   RopeShells shells;                    // shells of the untwisted rope
   std::vector<ReportSection> sections;  // in the order of time; of more than six, six are shown

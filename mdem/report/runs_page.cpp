@@ -16,17 +16,21 @@ namespace {
 
 // Columns of most comparisons, drawn where they vary.
 const char* const usual[] = {
-    "torque_upper_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain", "beta_deg", "Q",
+    "torque_nN_nm", "tension_upper_nN", "stored_MJ_per_kg", "ends_strain", "beta_deg", "Q",
     "amplitude_nm",       "void_area_nm2",    "vdw_eV",           "kinetic_eV"};
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+// `rows` are those of the log of the run or of its errors.
+std::vector<double> values_in(const RunCurve& run, const std::string& column, const std::vector<LogRow>& rows) {
+  return values_of(rows, curve_column(column, run.log).value);
+}
+
 bool varies(const std::vector<RunCurve>& runs, const std::string& column) {
-  const LogValue value = logged(column);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const RunCurve& run : runs)
-    for (const LogRow& row : run.log)
-      if (const double v = value(row); std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
+    for (const double v : values_in(run, column, run.log))
+      if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
   return most - least > 1e-9 * std::max(std::fabs(most), std::fabs(least));
 }
 
@@ -59,13 +63,13 @@ ScatterChart chart_of(const std::vector<RunCurve>& runs, const RunsFigure& figur
   chart.x = column_axis(figure.x);
   chart.y = column_axis(column);
   chart.y.decades = figure.y_decades;
-  const LogValue x = logged(figure.x), y = logged(column);
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    ChartLine line{label_of(runs, k), values_of(runs[k].log, x), values_of(runs[k].log, y),
+    const RunCurve& run = runs[k];
+    ChartLine line{label_of(runs, k), values_in(run, figure.x, run.log), values_in(run, column, run.log),
                    colour_of(k, runs.size())};
-    line.beyond = rows_within(runs[k].log, runs[k].limits);
-    if (!runs[k].error.empty() && !figure.y_decades) line.error = values_of(runs[k].error, y);
+    line.beyond = rows_within(run.log, run.limits);
+    if (!run.error.empty() && !figure.y_decades) line.error = values_in(run, column, run.error);
     for (const double v : line.x)
       if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
     chart.lines.push_back(std::move(line));
@@ -108,7 +112,7 @@ std::vector<TableColumn> table_of(const std::vector<RunCurve>& runs, const std::
   for (const RunCurve& run : runs) rows = std::max(rows, run.log.size());
   for (const RunCurve& run : runs)
     for (const std::string& name : {x, y}) {
-      columns.push_back({run.name + ", " + name, values_of(run.log, logged(name))});
+      columns.push_back({run.name + ", " + name, values_in(run, name, run.log)});
       columns.back().values.resize(rows, nan);
     }
   return columns;
@@ -118,23 +122,23 @@ std::string end_text(const RunCurve& run, const std::string& column) {
   const auto text = [](double value, double error) {
     return std::isfinite(value) ? measured_text(value, error) : std::string("–");
   };
-  if (!run.means) return text(run.log.back()[column], run.error.empty() ? nan : run.error.back()[column]);
+  const LogValue value = curve_column(column, run.log).value;
+  if (!run.means) return text(value(run.log.back()), run.error.empty() ? nan : value(run.error.back()));
   const RunMeans& m = *run.means;
-  std::string words = text(m.value[column], m.error[column]);
-  if (m.needed_ps[column] > 0)
+  std::string words = text(value(m.value), value(m.error));
+  if (value(m.needed_ps) > 0)
     words += fmt::format(" <span class=\"soft\">too short for an error, {} ps would do</span>",
-                         number_text(m.needed_ps[column], 2));
-  else if (std::isfinite(m.correlation_ps[column]))
-    words +=
-        fmt::format(" <span class=\"soft\">correlated over {} ps</span>", number_text(m.correlation_ps[column], 2));
+                         number_text(value(m.needed_ps), 2));
+  else if (const double correlation = value(m.correlation_ps); std::isfinite(correlation))
+    words += fmt::format(" <span class=\"soft\">correlated over {} ps</span>", number_text(correlation, 2));
   return words;
 }
 
 std::string ends(const std::vector<RunCurve>& runs, const std::vector<std::string>& columns) {
   std::string html =
       "<div class=\"scroll\"><table class=\"facts numbers\"><thead><tr><th></th><th>run</th><th>rows</th>";
-  for (const OutputColumn& c : limit_columns()) html += fmt::format("<th title=\"{}\">{}</th>", c.meaning, c.name);
-  for (const std::string& c : columns) html += "<th>" + escape_markup(c) + "</th>";
+  for (const OutputColumn& c : limit_columns()) html += head_cell(c.name, c.meaning);
+  for (const std::string& c : columns) html += head_cell(c, curve_column(c, {}).meaning);
   html += "<th></th></tr></thead><tbody>\n";
   std::size_t k = 0;
   for (const RunCurve& run : runs) {
@@ -258,7 +262,7 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
   for (const std::string& column : columns) {
     const std::string svg = scatter_svg(chart_of(runs, figure, column));
     const std::string title_text = "<h3>" + escape_markup(column_axis(column).quantity) + "</h3>\n";
-    std::string meaning = observables()[index_of_observable(column)].meaning;
+    std::string meaning = curve_column(column, {}).meaning;
     if (!meaning.empty()) meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
     const std::string one =
         svg.empty()
@@ -281,7 +285,11 @@ std::string runs_page(const std::string& title, const std::vector<RunCurve>& run
 
 std::string runs_svg(const std::vector<RunCurve>& runs, const RunsFigure& figure) {
   const std::vector<std::string> columns = columns_of(runs, figure);
-  return columns.empty() ? "" : chart_file(chart_of(runs, figure, columns.front()));
+  if (columns.empty()) return "";
+  ScatterChart scatter = chart_of(runs, figure, columns.front());
+  if (std::any_of(scatter.chart.lines.begin(), scatter.chart.lines.end(), [](const ChartLine& l) { return !l.error.empty(); }))
+    scatter.chart.note = "band: one standard error";
+  return chart_file(scatter);
 }
 
 namespace {
@@ -292,9 +300,11 @@ std::string means_csv(const std::vector<RunCurve>& runs, const std::vector<std::
   text += "," + column_names(limit_columns()) + "\n";
   for (const RunCurve& run : runs) {
     text += fmt::format("\"{}\",{},{:.6g}", run.name, run.replicates, run.means->over_ps);
-    for (const std::string& c : columns)
-      text += fmt::format(",{:.8g},{:.3g},{:.3g}", run.means->value[c], run.means->error[c],
-                          run.means->correlation_ps[c]);
+    for (const std::string& c : columns) {
+      const LogValue value = curve_column(c, run.log).value;
+      text += fmt::format(",{:.8g},{:.3g},{:.3g}", value(run.means->value), value(run.means->error),
+                          value(run.means->correlation_ps));
+    }
     text += "," + limit_cells(run.limits) + "\n";
   }
   return text;
@@ -308,13 +318,17 @@ std::string runs_csv(const std::vector<RunCurve>& runs, const RunsFigure& figure
   std::string text = "run,replicates," + figure.x;
   for (const std::string& c : columns) text += fmt::format(",{},{}_standard_error", c, c);
   text += "," + column_names(limit_columns()) + "\n";
-  for (const RunCurve& run : runs)
+  for (const RunCurve& run : runs) {
+    const LogValue x = curve_column(figure.x, run.log).value;
+    std::vector<LogValue> values;
+    for (const std::string& c : columns) values.push_back(curve_column(c, run.log).value);
     for (std::size_t r = 0; r < run.log.size(); ++r) {
-      text += fmt::format("\"{}\",{},{:.8g}", run.name, run.replicates, run.log[r][figure.x]);
-      for (const std::string& c : columns)
-        text += fmt::format(",{:.8g},{:.3g}", run.log[r][c], run.error.empty() ? nan : run.error[r][c]);
+      text += fmt::format("\"{}\",{},{:.8g}", run.name, run.replicates, x(run.log[r]));
+      for (const LogValue& value : values)
+        text += fmt::format(",{:.8g},{:.3g}", value(run.log[r]), run.error.empty() ? nan : value(run.error[r]));
       text += "," + limit_cells(run.limits) + "\n";
     }
+  }
   return text;
 }
 

@@ -19,7 +19,7 @@ struct RunMeans {
   LogRow correlation_ps;  // the mean over replicates
   LogRow needed_ps;       // where the time is too short for an error; else 0
 };
-// Of logs that are not empty.
+// Means over the end of logs, none of which is empty.
 RunMeans means_of(const std::vector<std::vector<LogRow>>& logs, double over_ps);
 
 // One run, or the mean over replicates that differ in their seed alone.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -113,6 +114,8 @@ std::vector<std::vector<std::string>> sets_table(const std::vector<ParameterSet>
     return set.filament ? "none: a filament" : name.empty() ? "not known" : name;
   });
   for (const Row& row : compared) {
+    if (std::all_of(sets.begin(), sets.end(), [&](const ParameterSet& set) { return cell(set, row.key) == "-"; }))
+      continue;
     out.push_back({row.name, unit_of(sets, row.key)});
     for (const ParameterSet& set : sets) out.back().push_back(cell(set, row.key));
     for (std::size_t k = 1; k < sets.size(); ++k) out.back().push_back(difference(sets[0], sets[k], row.key));
@@ -130,7 +133,7 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
   Figures figures;
   std::string html = page_head("Parameter sets") +
                      "<body>\n<main>\n<p class=\"kicker\">Ropewalk: parameter sets side by "
-                     "side</p>\n<h1>Parameter sets</h1>\n<div class=\"scroll\"><table class=\"facts\"><thead><tr>";
+                     "side</p>\n<h1>Parameter sets</h1>\n<div class=\"scroll\"><table class=\"facts whole\"><thead><tr>";
   const std::vector<std::vector<std::string>> rows = sets_table(sets);
   for (const std::string& head : rows.front()) html += "<th>" + escape_markup(head) + "</th>";
   html += "</tr></thead><tbody>\n";

@@ -220,6 +220,24 @@ AxisRange x_range(const LineChart& chart) {
   return r;
 }
 
+// Bands and bars that would make the lines flat are cut.
+AxisRange y_of_lines_and_errors(const LineChart& chart) {
+  constexpr double most = 0.6;  // share of the range of the lines, to either side
+  AxisRange lines, whole;
+  for (const ChartLine& line : chart.lines)
+    for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+      if (!std::isfinite(line.x[i]) || !std::isfinite(line.y[i])) continue;
+      lines.take(line.y[i]);
+      whole.take(line.y[i]);
+      if (i >= line.error.size() || !std::isfinite(line.error[i]) || chart.y.decades) continue;
+      whole.take(line.y[i] - line.error[i]);
+      whole.take(line.y[i] + line.error[i]);
+    }
+  if (!(lines.span() > 0)) return whole;
+  const double more = most * lines.span();
+  return {std::max(whole.low, lines.low - more), std::min(whole.high, lines.high + more)};
+}
+
 struct Plot {
   double left = 0, top = 0, right = 0, bottom = 0;
   Scale x, y;
@@ -256,7 +274,7 @@ std::string stroke_class(const ChartLine& line) {
   return fmt::format("line c{}{}", colour_of(line), line.points ? " points" : line.dashed ? " dashed" : "");
 }
 
-// The line as far as the model holds, and what comes behind.
+// Draws the line in two parts: up to the point where a limit is passed, and from there on.
 std::string draw_in_two(const ChartLine& line, const Plot& plot) {
   ChartLine within = line, behind = line;
   const auto cut = [](std::vector<double>& v, std::size_t from, std::size_t to) {
@@ -290,7 +308,7 @@ std::string error_bars(const ChartLine& line, const Plot& plot) {
   return text;
 }
 
-// Bands of the lines' errors, cut at the edges of the plot. A missing error interrupts a band.
+// Bands of the lines' errors. A missing error interrupts a band.
 std::string draw_errors(const LineChart& chart, const Plot& plot) {
   std::string text;
   const auto y = [&](double v) { return std::clamp(plot.py(v), plot.top, plot.bottom); };
@@ -546,10 +564,7 @@ std::string draw_labels(const LineChart& chart, const Plot& plot) {
 Plot layout(const ScatterChart& scatter) {
   const LineChart& chart = scatter.chart;
   Plot plot;
-  AxisRange x = x_range(chart), y;
-  for (const ChartLine& line : chart.lines)
-    for (const Stretch& s : stretches(line))
-      for (const PagePoint& p : s) y.take(p.y);
+  const AxisRange x = x_range(chart), y = y_of_lines_and_errors(chart);
   plot.x = scatter.chart.x.decades ? decades_of(with_air(x)) : scale_of(x, 6, chart.x.whole);
   plot.y = scatter.chart.y.decades
                ? decades_of(with_air(y))

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "io/pull.hpp"
+
 namespace ropewalk {
 namespace {
 
-constexpr double slack_stress = 0.1, half_stress = 0.5;  // parts of the largest stress
+constexpr double half_stress = 0.5;  // part of the largest stress
 
 struct TensileQuantity {
   OutputColumn column;
@@ -29,17 +31,6 @@ const TensileQuantity tensile_quantities[] = {
     {{"breaks_within_nm", "nm", "between the quartiles of these heights"}, &TensileTest::breaks_within},
 };
 
-// Slope of the least squares line through the rows [from, to].
-double slope_of(const std::vector<LogRow>& log, std::size_t from, std::size_t to) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (std::size_t k = from; k <= to; ++k) {
-    const double e = log[k]["ends_strain"], s = log[k]["stress_GPa"];
-    n += 1, x += e, y += s, xx += e * e, xy += e * s;
-  }
-  const double spread = n * xx - x * x;
-  return spread > 0 ? (n * xy - x * y) / spread : NAN;
-}
-
 double height_quantile(const std::vector<double>& sorted, double part) {
   if (sorted.empty()) return NAN;
   const double at = part * static_cast<double>(sorted.size() - 1);
@@ -51,32 +42,26 @@ double height_quantile(const std::vector<double>& sorted, double part) {
 }  // namespace
 
 TensileTest tensile_test(const std::vector<LogRow>& log, std::vector<double> heights_of_breaks) {
-  const LogRow* strongest = strongest_row(log);
-  if (!strongest) throw std::invalid_argument("nothing pulls in it");
-  const auto most = static_cast<std::size_t>(strongest - log.data());
+  const std::optional<LoggedPull> pull = pull_of(log);
+  if (!pull) throw std::invalid_argument("nothing pulls in it");
   TensileTest t;
-  t.strength = (*strongest)["stress_GPa"];
-  t.specific = (*strongest)["specific_stress_N_per_tex"];
-  double least_strain = (*strongest)["ends_strain"];
-  for (std::size_t k = 0; k < most; ++k) least_strain = std::min(least_strain, log[k]["ends_strain"]);
-  const double still = least_strain + 1e-3 * ((*strongest)["ends_strain"] - least_strain);
-  std::size_t begin = most;
-  while (begin > 0 && log[begin]["stress_GPa"] > slack_stress * t.strength && log[begin]["ends_strain"] > still)
-    --begin;
-  const double moved = 1e-4 * ((*strongest)["ends_strain"] - least_strain);
-  while (begin > 0 && log[begin]["ends_strain"] - log[begin - 1]["ends_strain"] > moved) --begin;
-  t.before = log[begin];
-  t.strain = (*strongest)["ends_strain"] - t.before["ends_strain"];
-  const double middle = 0.5 * (t.before["stress_GPa"] + t.strength);
-  std::size_t half = begin;
-  while (half < most && log[half]["stress_GPa"] < middle) ++half;
-  t.modulus = slope_of(log, begin, half);
-  for (std::size_t k = begin + 1; k < log.size() && !t.to_half; ++k) {
+  t.strength = pull->strength;
+  t.specific = log[pull->most]["specific_stress_N_per_tex"];
+  t.before = log[pull->begin];
+  t.strain = pull->strain;
+  t.modulus = pull->modulus;
+  t.no_strength = pull->no_strength;
+  for (std::size_t k = pull->begin + 1; k < log.size() && !t.to_half; ++k) {
     const double strain = log[k]["ends_strain"] - log[k - 1]["ends_strain"];
     t.toughness += 1e3 * strain * 0.5 * (log[k]["stress_GPa"] + log[k - 1]["stress_GPa"]);
     t.specific_toughness +=
         1e3 * strain * 0.5 * (log[k]["specific_stress_N_per_tex"] + log[k - 1]["specific_stress_N_per_tex"]);
-    t.to_half = k > most && log[k]["stress_GPa"] < half_stress * t.strength;
+    t.to_half = k > pull->most && log[k]["stress_GPa"] < half_stress * t.strength;
+  }
+  if (!t.no_strength.empty()) {
+    for (double* of_pull : {&t.strength, &t.specific, &t.strain, &t.modulus, &t.toughness, &t.specific_toughness})
+      *of_pull = NAN;
+    t.to_half = false;
   }
   t.links = log.back()["links_formed"];
   t.links_broken = log.back()["links_broken"];
@@ -89,6 +74,7 @@ TensileTest tensile_test(const std::vector<LogRow>& log, std::vector<double> hei
 
 LoadTest load_test(const TensileTest& test) {
   LoadTest out{test.before, {}, test.to_half};
+  out.why_none = test.no_strength;
   for (const TensileQuantity& q : tensile_quantities) out.values.push_back(test.*q.value);
   return out;
 }
@@ -97,7 +83,7 @@ const LoadTestKind& tensile_kind() {
   static const LoadTestKind kind = [] {
     LoadTestKind k{"Strength",
                    "Stress is the tension over the cells of the tubes in a cross-section. The work of the pull is "
-                   "counted until the stress has fallen to half of its largest value; The column \"to half\" "
+                   "counted until the stress has fallen to half of its largest value. The column \"to half\" "
                    "counts the runs that went on until then.",
                    "strength",
                    "GPa",

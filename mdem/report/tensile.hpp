@@ -9,9 +9,7 @@
 
 namespace ropewalk {
 
-// From the log of one run. The pull is the last rise of the strain before the largest stress that began with a
-// tenth of that stress or less, or at the strain at which the rope was held. It ends where the stress has fallen to
-// half.
+// From the log of one run. The pull (io/pull.hpp) ends where the stress has fallen to half.
 struct TensileTest {
   LogRow before;                  // the row in which the pull begins
   double strength = 0;            // GPa, largest stress
@@ -23,6 +21,7 @@ struct TensileTest {
   double links = 0, links_broken = 0, bonds_broken = 0;  // at the end of the run
   double breaks_at = 0;                                  // nm, median height of what broke; nan: nothing did
   double breaks_within = 0;                              // nm, between the quartiles of these heights
+  std::string no_strength;                               // why the numbers of the pull are nan; empty: they are not
   bool to_half = false;  // the run went on until the stress had fallen to half of the largest
 };
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double half_torque = 0.5;  // part of the largest torque
 
 // Names of columns in result_columns().
-const char* const shown[] = {"torque_max_nN_nm", "torque_max_at_deg", "torque_within_nN_nm",
+const char* const shown[] = {"torque_max_nN_nm", "torque_max_at_deg", "torque_within_nN_nm", "first_limit_deg",
                              "first_break_deg",  "tubes_broken",      "stored_at_limit_MJ_per_kg"};
 
 template <class Use>

@@ -58,18 +58,10 @@ std::string device_of(const RunOrigin& origin, const std::string& asked_for, Run
 }
 
 Scene with_own(Scene scene, const RunSettings& asked) {
-  scene.drives.insert(scene.drives.end(), asked.own_drives.begin(), asked.own_drives.end());
+  if (asked.own_forces.empty()) return scene;
+  for (const OwnForceOfRun& own : asked.own_forces) scene.drives.push_back(own.drive);
+  scene.missing_forces.clear();
   return scene;
-}
-
-// No file has a force of one's own: who resumes has to give it again.
-void refuse_other_forces(const RunOrigin& origin, const ResumeSettings& asked) {
-  if (origin.own_forces == own_forces_of(asked)) return;
-  const auto words = [](const std::string& count) { return count.empty() ? "none" : count; };
-  throw InputError({"", 0, "forces"},
-                   fmt::format("the run was begun with {} of one's own, in Python, and would go on with {}",
-                               words(origin.own_forces), words(own_forces_of(asked))),
-                   "give the same to ropewalk.resume(DIR, forces=...)");
 }
 
 // Leaves no part of a run that has no checkpoint, as far as the disk lets it.
@@ -114,6 +106,7 @@ std::unique_ptr<Run> begin_run(const Scene& scene, const RunDirectory& dir, cons
 
 std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& asked, RunListener& listener) {
   refuse_strange_files(dir);
+  refuse_other_program(dir);
   refuse_without_checkpoint(dir);
   refuse_refined(dir);
   check_finer_directory(dir, asked, true);
@@ -121,11 +114,13 @@ std::unique_ptr<Run> resume_run(const RunDirectory& dir, const ResumeSettings& a
   remove_run_parts(dir);
   check_log_header(dir.log());
   ResumePoint point = find_resume_point(dir);
-  refuse_other_forces(point.checkpoint.origin, asked);
+  const std::string own_forces = own_forces_in_words(asked.own_forces);
+  refuse_other_forces(point.checkpoint.origin.own_forces, own_forces, dir.path);
   use_instructions_of(point.checkpoint.origin, asked.instructions, listener);
   const Scene scene = read_run_scene(dir);
   RunOrigin origin = origin_of(dir, scene);
   origin.instructions = point.checkpoint.origin.instructions;  // spoken of already
+  origin.own_forces = own_forces;
   std::vector<std::string> notes =
       judged_changes(changes_of(point.checkpoint.origin, origin, dir), asked.accept_changes, dir);
   notes.insert(notes.end(), point.remarks.begin(), point.remarks.end());

@@ -25,7 +25,7 @@ class Checkpoints {
 
   // Throws InputError where it cannot be written. `ends_for`: see RunCheckpoint.
   void save(StopReason ends_for = StopReason::none);
-  // The checkpoint before stands where it cannot be written, and it is tried again.
+  // If the checkpoint cannot be written, the earlier one stays, and the next call tries again.
   void save_if_possible();
   void begin_interval();
   void save_if_due();

@@ -17,7 +17,7 @@ std::string events_header();
 std::string event_lines(const Topology& topology, const std::vector<TermEvent>& events);
 std::string events_csv(const Topology& topology, const std::vector<TermEvent>& events);
 
-// Of a tube, since the start.
+// Whether a bond of a tube broke after the start.
 bool is_break(const TermEvent& event);
 
 // The bonds of tubes that broke; none where there is no file. Throws InputError where a line is not right.

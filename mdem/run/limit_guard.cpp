@@ -21,8 +21,13 @@ LimitGuard::LimitGuard(OnLimit on_limit, bool may_refine, const MovingScene& mov
 
 void LimitGuard::check_before_start() const {
   if (on_limit_ != OnLimit::refine) return;
-  const std::string why = why_not_finer(moving_.scene, moving_.prepared.topology);
+  const std::string why = why_not_refined();
   if (!why.empty()) throw InputError({"", 0, "--on-limit"}, "refine: " + why, "take warn or stop");
+}
+
+std::string LimitGuard::why_not_refined() const {
+  if (moving_.simulation.broken_bonds()) return "tubes have broken";
+  return why_not_finer(moving_.scene, moving_.prepared.topology);
 }
 
 void LimitGuard::inherit(const LimitsFile& earlier, std::int64_t step) {
@@ -51,7 +56,7 @@ StopReason LimitGuard::check(bool with_pressure) {
   if (!passed.empty()) write();
   if (on_limit_ == OnLimit::stop && !passed.empty()) return StopReason::limit;
   if (on_limit_ != OnLimit::refine || !watch_.finer_would_help()) return StopReason::none;
-  const std::string why = why_not_finer(moving_.scene, topology);
+  const std::string why = why_not_refined();
   if (why.empty()) return StopReason::refine;
   if (!passed.empty()) listener_.tell("not refined: " + why + "; the run goes on as it is");
   return StopReason::none;

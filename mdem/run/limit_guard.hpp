@@ -43,6 +43,9 @@ class LimitGuard {
 
  private:
   double drift() const;
+  // Why the elements cannot be split now; empty: they can. Where a tube is broken, half of an element would come to
+  // stand in the gap.
+  std::string why_not_refined() const;
 
   OnLimit on_limit_;
   const MovingScene& moving_;

@@ -63,12 +63,12 @@ std::vector<std::string> LimitWatch::check(const Topology& topology, const Topol
     r.key = kind.key;
     r.unit = kind.unit;
     if (kind.whole ? !std::isfinite(peak.value) : peak.element < 0) continue;
-    const double value = peak.value / kind.unit_size;
+    const double sign = peak.pressed ? -1 : 1;
     const bool first = peak.passed() && !r.passed;
     const bool none_yet = kind.whole ? r.limit == 0 && r.largest == 0 : r.element < 0;
-    if (none_yet || peak.is_beyond({r.largest * kind.unit_size, r.limit * kind.unit_size})) {
-      r.limit = peak.limit / kind.unit_size;
-      r.largest = value;
+    if (none_yet || peak.is_beyond({std::fabs(r.largest) * kind.unit_size, std::fabs(r.limit) * kind.unit_size})) {
+      r.limit = sign * peak.limit / kind.unit_size;
+      r.largest = sign * peak.value / kind.unit_size;
       r.largest_at_ps = state.time;
       r.tube = kind.whole ? -1 : topology.tube_of(peak.element);
       r.element = kind.whole ? -1 : peak.element - topology.tube_begin[r.tube];

@@ -62,6 +62,7 @@ Statics LoadStepsLoop::rest_at(double time) {
   how.fire = options.solver == RunOptions::Solver::automatic;
   how.near = !begins();
   how.most_overloaded = enough_overloaded;
+  if (next() + 1 < times_.size()) how.loads_to_come = times_[next() + 1];
   NewtonStatics newton(simulation, how);
   const auto go_on = [this](long) { return goes_on(); };
   Statics out = newton.follow(time, options.goal, go_on);
@@ -86,6 +87,9 @@ void LoadStepsLoop::write(const Statics& end) {
   if (run_.files.frame_step() != run_.step()) run_.write_frame();
   run_.files.write_equilibria(found_);
   run_.rollback.take_snapshot();
+  if (e.saddles > 0 && std::isfinite(run_.last_row["geometric_twist_deg"]))
+    run_.listener.tell(fmt::format("at {} it left a saddle of the energy, and rests at a geometric twist of {:.4g}°",
+                                   load_words(e.time), run_.last_row["geometric_twist_deg"]));
 }
 
 std::string LoadStepsLoop::load_words(double time) const {
@@ -116,6 +120,9 @@ std::string LoadStepsLoop::words_of_curve() const {
                          load_words(first->time));
   else if (!found_.empty() && count(Equilibrium::Stability::unknown) == 0)
     words += ", all stable";
+  for (const Equilibrium& e : found_)
+    if (e.saddles > 0)
+      words += fmt::format("; at {} it left a saddle of the energy: it winds or bends there by itself", load_words(e.time));
   if (const auto unknown = count(Equilibrium::Stability::unknown); unknown > 0)
     words += fmt::format("; the stability of {} is not known", unknown);
   return words;

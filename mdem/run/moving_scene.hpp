@@ -9,8 +9,8 @@
 
 namespace ropewalk {
 
-// Of one period of a slice: bonds that begin with an element of its own, half of each contact that such an element
-// has, and of the force terms as large a share as its elements are of all. None: no slice.
+// Energies of one period of a slice: bonds that begin with an element of its own, half of each contact that such an
+// element has, and as large a share of the force terms as its elements are of all. None: no slice.
 std::optional<Energies> energies_of_period(const Simulation& simulation);
 
 // Without the forces at the ends and without the period of a slice, which costs as much as some steps. `first`,

@@ -87,6 +87,8 @@ OriginChanges changes_of(const RunOrigin& before, const RunOrigin& now, const Ru
     if (k >= before.sets.size() || k >= now.sets.size() || before.sets[k] != now.sets[k])
       out.others.push_back(std::filesystem::path(dir.parameters(k)).filename().string() + " is another one");
   if (before.files != now.files) out.others.push_back("friction-*.toml: another file of friction");
+  if (before.own_forces != now.own_forces)
+    out.others.push_back(fmt::format("forces of one's own: {} -> {}", before.own_forces, now.own_forces));
   if (before.state != now.state) out.others.push_back("state.csv is another one");
   if (before.version != now.version)
     out.others.push_back(fmt::format("ropewalk {} -> {}", before.version, now.version));

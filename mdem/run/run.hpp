@@ -87,9 +87,6 @@ class Run {
   RunParts parts_;
 };
 
-// As RunOrigin has them.
-std::string own_forces_of(const RunSettings& settings);
-
 // The run and those in which it goes on.
 RunResult go_through(std::unique_ptr<Run> run);
 

@@ -17,6 +17,7 @@
 #include "io/frames/frames.hpp"
 #include "io/running_hash.hpp"
 #include "model/error.hpp"
+#include "scene/missing_forces.hpp"
 #include "scene/prepare.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "version.hpp"
@@ -205,7 +206,7 @@ std::string id_of_program() { return fmt::format("{} ({})", version, git_id); }
 enum class Format { this_one, another, damaged };
 
 Format format_of_checkpoint(const std::string& path) {
-  constexpr std::size_t number = 20;  // of "ROPEWALK-CHECKPOINT "
+  constexpr std::size_t number = 20;  // length of "ROPEWALK-CHECKPOINT "
   std::string begin(std::strlen(title), '\0');
   begin.resize(read_some(path, opened_to_read(path).get(), begin.data(), begin.size()));
   if (begin == title) return Format::this_one;
@@ -372,6 +373,7 @@ ResumePoint find_resume_point(const RunDirectory& dir) {
 }
 
 Simulation simulation_at(const RunDirectory& dir, const Scene& scene, const Prepared& p, const RunCheckpoint& c) {
+  refuse_missing_forces(c.origin.own_forces, dir.path);
   Simulation s = start(scene, p);
   try {
     s.restore(c.simulation);

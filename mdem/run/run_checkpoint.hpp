@@ -25,7 +25,7 @@ struct RunOrigin {
   std::string version, git_id;     // version of the program
   std::string instructions;        // see instructions_in_use()
   std::string device;              // as --device names it; empty: none
-  std::string own_forces;          // how many forces of one's own it has, in Python; empty: none
+  std::string own_forces;          // see own_forces_in_words()
 };
 // The origin of a run in this directory by this program, without a device.
 RunOrigin origin_of(const RunDirectory& dir, const Scene& scene);

@@ -10,6 +10,7 @@
 #include "io/removal.hpp"
 #include "model/error.hpp"
 #include "scene/kinds/state.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene_toml.hpp"
 #include "scene/watch.hpp"
 
@@ -195,8 +196,15 @@ void copy_parameters(const Scene& scene, const RunDirectory& to) {
   for (std::size_t k = 0; k < files.size(); ++k) write_file_atomically(to.friction(k), read_file(files[k]));
 }
 
+void refuse_other_program(const RunDirectory& dir) {
+  if (!fs::exists(dir.manifest())) return;
+  const Manifest m = read_manifest(dir.manifest());
+  refuse_missing_parts(m.own_parts, m.program, dir.path);
+}
+
 Scene read_run_scene(const RunDirectory& dir) {
   refuse_strange_files(dir);
+  refuse_other_program(dir);
   if (!fs::exists(dir.scene()))
     throw InputError({dir.path, 0, ""}, "is not the directory of a run (no scene.toml in it)",
                      "name the directory that `ropewalk run --out` made");
@@ -205,7 +213,11 @@ Scene read_run_scene(const RunDirectory& dir) {
   Scene scene = read_scene(dir.scene(), sets);
   if (scene.from_file()) scene.source = std::make_shared<StateSource>(dir.state(), dir.state_memory());
   // A scene without a name has that of its file, which here is always scene.toml.
-  if (fs::exists(dir.manifest())) scene.name = read_manifest(dir.manifest()).scene;
+  if (fs::exists(dir.manifest())) {
+    const Manifest m = read_manifest(dir.manifest());
+    scene.name = m.scene;
+    scene.missing_forces = m.own_forces;
+  }
   return scene;
 }
 

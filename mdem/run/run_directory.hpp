@@ -62,6 +62,8 @@ void empty_run_directory(const RunDirectory& dir);
 // Throws InputError where a file of a run is a link, a pipe or another thing that is no file. Called before any is
 // read, since a directory may come from somebody else.
 void refuse_strange_files(const RunDirectory& dir);
+// Throws InputError where the program of the run has parts of its own (scene/own_parts.hpp) that this one lacks.
+void refuse_other_program(const RunDirectory& dir);
 // Removes what killed processes left half written.
 void remove_run_parts(const RunDirectory& dir);
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scene/own_parts.hpp"
+#include "scene/parts_in_use.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/device/device_stepper.hpp"
 #include "sim/threads/threads.hpp"
@@ -19,6 +21,9 @@ Manifest manifest_of(const RunParts& run, const std::string& status, const std::
   m.build_type = build_type;
   m.instructions = instructions_in_use();
   if (const DeviceStepper* device = run.moving.simulation.device()) m.device = device->name();
+  m.program = own_program();
+  m.own_parts = own_parts_of_run(scene);
+  m.own_forces = own_forces_in_words(run.settings.own_forces);
   m.threads = threads_in_use();
   m.seed = scene.start.seed;
   m.scene_hash = scene.hash;

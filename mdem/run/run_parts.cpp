@@ -26,7 +26,7 @@ RunParts::RunParts(RunDirectory dir, Scene scene, const RunSettings& asked, RunL
 void RunParts::use_device() {
   if (!names_device(settings.device)) return;
   if (moving.relaxes())
-    throw InputError({"", 0, "--device"}, "does not go with a relaxation, which this processor does",
+    throw InputError({"", 0, "--device"}, "does not go with run.mode = \"relax\"",
                      "give --device none");
   ropewalk::use_device(moving.simulation, settings.device);
   schedule.look_rarely();

@@ -19,7 +19,7 @@ class RunSchedule {
   void count_from(std::int64_t step, double time, double time_step);
 
   std::int64_t last_step() const { return last_step_; }  // -1: of a relaxation, which ends by itself
-  // Of the scene. A run that --steps or --until ends at another one stops on the way.
+  // The last step of the scene. A run that --steps or --until ends at another step stops on the way.
   std::int64_t scene_end() const { return scene_end_; }
   bool ends_with_the_scene() const { return last_step_ == scene_end_; }
   std::size_t expected_frames() const { return expected_frames_; }  // frames of the whole scene
@@ -29,7 +29,7 @@ class RunSchedule {
   bool has_check(std::int64_t step, bool closely) const {
     return step % std::min<std::int64_t>(log_every_, window(closely)) == 0;
   }
-  // Of a good state, to which the run may go back.
+  // Whether a good state is kept at this step, to which the run can roll back.
   bool has_mark(std::int64_t step, bool closely) const { return step % window(closely) == 0; }
   // Where a device moves the elements, a look at their state costs, by estimate, as much as
   // hundreds of steps.

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "run/limit_watch.hpp"
+#include "run/own_forces.hpp"
 #include "run/wall_time.hpp"
-#include "scene/drive.hpp"
 
 namespace ropewalk {
 
@@ -19,8 +18,7 @@ struct RunSettings {
   bool may_refine = true;  // false: of a run in a campaign, whose verbs take no OnLimit::refine
   WallTime wall_time;
   bool force = false;  // replace an earlier run
-  // Beside those of the scene: what no file says, forces of one's own in Python. Such a run goes on with as many.
-  std::vector<std::shared_ptr<const Drive>> own_drives = {};
+  std::vector<OwnForceOfRun> own_forces = {};
   // As open_device() names it; empty: this processor alone (resume: what the run was begun with); "none": this
   // processor alone.
   std::string device;

@@ -50,10 +50,6 @@ void Run::tell_notes() const {
     parts_.listener.tell_note("the scene was changed, and what it expects by [[expect]] is not judged");
 }
 
-std::string own_forces_of(const RunSettings& settings) {
-  return settings.own_drives.empty() ? "" : std::to_string(settings.own_drives.size());
-}
-
 // Under which `resume` goes on.
 std::string Run::device_name() const { return parts_.moving.simulation.device() ? parts_.settings.device : ""; }
 
@@ -62,7 +58,7 @@ void Run::begin_files() {
   const Scene& scene = p.moving.scene;
   p.checkpoints.origin = origin_of(p.files.directory(), scene);
   p.checkpoints.origin.device = device_name();
-  p.checkpoints.origin.own_forces = own_forces_of(p.settings);
+  p.checkpoints.origin.own_forces = own_forces_in_words(p.settings.own_forces);
   write_manifest("running");  // before the checkpoint: it has the name of the scene
   p.files.open(scene.run.frames_format, {}, p.schedule.expected_frames());
   p.files.write_header();
@@ -88,7 +84,7 @@ void Run::restore(RunCheckpoint c) {
   p.clock.earlier = c.wall_seconds;
   p.checkpoints.origin = origin_of(dir, p.moving.scene);
   p.checkpoints.origin.device = device_name();
-  p.checkpoints.origin.own_forces = own_forces_of(p.settings);
+  p.checkpoints.origin.own_forces = own_forces_in_words(p.settings.own_forces);
   p.files.open(p.moving.scene.run.frames_format, c.files, p.schedule.expected_frames());
   p.limits.inherit(c.limits, p.state().step);
   const std::vector<TubeBreak> breaks = tube_breaks(dir.events());

@@ -42,12 +42,12 @@ std::string TerminalListener::asked_to_stop() {
   return stop_signal ? fmt::format("by signal {}", static_cast<int>(stop_signal)) : "";
 }
 
-int tell_end(const RunResult& r) {
+int tell_end(const RunResult& r, bool again) {
   const std::string& dir = r.directory.path;
   switch (r.end) {
     case RunEnd::finished:
       print_results(r);
-      if (r.beyond > far_beyond) tell(r.worst + ". Beyond it the results do not describe real tubes");
+      if (r.beyond > far_beyond && !again) tell(r.worst + ". Beyond it the results do not describe real tubes");
       return missed(r.expected) > 0 ? not_as_expected : 0;
     case RunEnd::incomplete:
       print_results(r);

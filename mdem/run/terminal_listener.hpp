@@ -28,7 +28,8 @@ class TerminalListener : public RunListener {
   std::optional<Progress> progress_;
 };
 
-// Says how a run ended. Returns the exit code of a program that did nothing else.
-int tell_end(const RunResult& result);
+// Says how a run ended. Returns the exit code of a program that did nothing else. `again`: the run repeats one that has
+// told of the limits it passed.
+int tell_end(const RunResult& result, bool again = false);
 
 }  // namespace ropewalk

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 
 #include "model/error.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene.hpp"
 #include "sim/forces/shipped_terms.hpp"
 
@@ -117,8 +117,9 @@ std::vector<TermKind> terms_of_shipped_drives() {
   std::vector<TermKind> kinds;
   for (const DriveKind& drive : shipped_drives())
     if (auto kind = term_kind_of(drive)) kinds.push_back(*std::move(kind));
-  // It follows from the strands of a scene and is in no table.
+  // In no table: the first follows from the strands of a scene, the second is given in Python.
   kinds.push_back({"ends", "van der Waals energy of the ends of tubes in line"});
+  kinds.push_back({"own_forces", "energy of forces of one's own, in Python"});
   return kinds;
 }
 
@@ -137,8 +138,9 @@ bool Drive::holds_elements() const {
 const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 
 bool add_drive_kind(DriveKind kind) {
-  assert(std::none_of(kinds_of_drives().begin(), kinds_of_drives().end(),
-                      [&](const DriveKind& other) { return other.table().name == kind.table().name; }));
+  register_own_part(std::any_of(kinds_of_drives().begin(), kinds_of_drives().end(),
+                                [&](const DriveKind& other) { return other.table().name == kind.table().name; }),
+                    "drive", kind.table().name);
   if (auto term = term_kind_of(kind)) add_term_kind(*std::move(term));
   kinds_of_drives().push_back(std::move(kind));
   return true;

@@ -92,7 +92,7 @@ double projected_distance2(const FilmTube& a, const FilmTube& b, double length) 
   return distance2(Footprint(a, length), Footprint(b, length));
 }
 
-// Of all supports the highest counts. While it is on the right, the right end can rise and the middle sinks: the
+// The highest of all supports counts. While it is on the right, the right end can rise and the middle sinks: the
 // tilt follows by bisection.
 void let_down(FilmTube& tube, const std::vector<FilmTube>& others, double length, double spacing) {
   const double half = 0.5 * length;

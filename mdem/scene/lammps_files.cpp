@@ -16,6 +16,9 @@
 #include "io/plain_text.hpp"
 #include "model/error.hpp"
 #include "scene/bounds.hpp"
+#include "scene/missing_forces.hpp"
+#include "scene/own_parts.hpp"
+#include "scene/parts_in_use.hpp"
 #include "scene/scene_place.hpp"
 
 namespace ropewalk {
@@ -105,6 +108,12 @@ std::vector<OutputColumn> lammps_tube_columns() { return listed(tube_columns); }
 std::vector<OutputColumn> lammps_row_columns() { return listed(row_columns); }
 
 void refuse_what_lammps_lacks(const Scene& scene) {
+  refuse_missing_forces(scene.missing_forces, scene.path);
+  if (const std::vector<PartInUse> own = parts_in_use(scene); !own.empty())
+    throw InputError(place_in(scene, own.front().key),
+                     fmt::format("is not for LAMMPS: lmp-ropewalk has no {}, which is of {} alone", own.front().words,
+                                 own_program()),
+                     fmt::format("run this scene with `{} run`", own_program()));
   Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
     if (lacking.key.empty()) lacking = drive->not_for_lammps();
@@ -310,10 +319,22 @@ std::string lammps_job(const LammpsScript& s, int elements) {
       "from=rope.state\n"
       "[ -s lammps.states ] && from=lammps.states\n"
       "before=$(wc -c lammps.states 2> /dev/null)\n"
-      "now=$(date +%s)\n"
-      "# A part of the time stays for the last state and the next job.\n"
-      "left=$((${{SLURM_JOB_END_TIME:-$((now + 86400))}} - now))\n"
-      "srun lmp-ropewalk -in in.rope -var from $from -var wall $((left - left / 20))\n"
+      "# Not every version of SLURM sets SLURM_JOB_END_TIME; squeue knows it.\n"
+      "end=$SLURM_JOB_END_TIME told= wall=\n"
+      "[ \"$end\" ] || told=$(squeue -h -j \"$SLURM_JOB_ID\" -o %e)\n"
+      "case $told in *T*) end=$(date -d \"$told\" +%s) ;; esac\n"
+      "if [ \"$end\" ]; then\n"
+      "  # A part of the time stays for the last state and the next job.\n"
+      "  left=$((end - $(date +%s)))\n"
+      "  wall=\"-var wall $((left - left / 20))\"\n"
+      "else\n"
+      "  echo 'SLURM does not tell when this job ends: after its time, submit job.sh again'\n"
+      "fi\n"
+      "# Where the cluster names no way to start MPI: PMIx, which Open MPI needs under srun.\n"
+      "if scontrol show config 2> /dev/null | grep -q '^MpiDefault *= none'; then\n"
+      "  srun --mpi=list 2>&1 | grep -qw pmix && export SLURM_MPI_TYPE=\"${{SLURM_MPI_TYPE:-pmix}}\"\n"
+      "fi\n"
+      "srun lmp-ropewalk -in in.rope -var from $from $wall\n"
       "code=$?\n"
       "[ $code = 6 ] || exit $code\n"
       "[ \"$(wc -c lammps.states)\" != \"$before\" ] || {{ echo 'no step was taken: give the job more time'; exit 6; }}\n"

@@ -12,6 +12,7 @@
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "scene/kinds/rope.hpp"
+#include "scene/missing_forces.hpp"
 #include "scene/refuse_loads.hpp"
 #include "scene/refuse_state.hpp"
 #include "scene/scene_place.hpp"
@@ -318,7 +319,7 @@ namespace {
 void refuse_statics(const Scene& scene, const Simulation& simulation) {
   if (scene.statics.steps > 0 && load_step_times(simulation.loads(), scene.statics.steps).empty())
     throw InputError(
-        {scene.path, 0, "statics.steps"}, "has no schedule to go along: no load and no grip changes",
+        place_in(scene, "statics.steps"), "has no schedule to go along: no load and no grip changes",
         "ramp a load, as by twist.rate_nN_nm_per_ps, or take [statics] away for the one state of rest");
   if (scene.run.mode != RunOptions::Mode::relax || scene.run.solver == RunOptions::Solver::fire) return;
   const NewtonStatics::Refusal refused = NewtonStatics::refusal(simulation);
@@ -328,6 +329,7 @@ void refuse_statics(const Scene& scene, const Simulation& simulation) {
 }  // namespace
 
 Simulation start(const Scene& scene, const Prepared& p) {
+  refuse_missing_forces(scene.missing_forces, scene.path);
   Simulation simulation(p.topology, p.interaction, p.loads, p.state, p.time_step, scene.contact.skin, p.stepping);
   simulation.set_gauges(ends_of(p.loads, p.topology), p.state);
   refuse_first_step(scene, simulation);

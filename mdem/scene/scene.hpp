@@ -106,6 +106,9 @@ struct Scene {
   LimitOptions limits;
   std::vector<StopRule> stops;
   std::vector<Expectation> expected;
+  // Forces of one's own that the run of this scene had, by name (scene/missing_forces.hpp). start() refuses to go on
+  // without them.
+  std::string missing_forces;
 
   const ParameterSet& parameters() const { return sets.front(); }
   bool from_file() const { return source && !source->file().empty(); }  // a state with velocities of its own

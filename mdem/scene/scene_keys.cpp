@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
+#include <set>
 
+#include "io/plain_text.hpp"
 #include "scene/drive_kind.hpp"
 #include "scene/kinds/scene_kind.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/tables/tables.hpp"
 
 namespace ropewalk {
@@ -18,6 +20,16 @@ bool SceneTable::optional() const {
 }
 
 std::string as_toml(double value) { return fmt::format("{:.6g}", value); }
+
+namespace {
+
+// Those of drives and kinds of one's own may have the name of another table: each register knows its own alone.
+void refuse_like_names(const std::vector<SceneTable>& tables) {
+  std::set<std::string> names;
+  for (const SceneTable& t : tables) refuse_taken_name(!names.insert(t.name).second, "table", t.name);
+}
+
+}  // namespace
 
 std::vector<SceneTable> scene_tables() {
   std::vector<SceneTable> tables = {top_table({}).doc()};
@@ -33,6 +45,7 @@ std::vector<SceneTable> scene_tables() {
   for (const SceneTable& table : {run_table().doc(), statics_table().doc(), observe_table().doc(),
                                   limits_table().doc(), stop_table().doc(), expect_table().doc()})
     tables.push_back(table);
+  refuse_like_names(tables);
   return tables;
 }
 
@@ -45,29 +58,25 @@ std::vector<SceneKey> scene_keys() {
 namespace {
 
 std::string title_of(const SceneTable& t) {
-  return t.name.empty() ? t.meaning + "\n" : fmt::format("{}  {}\n", t.header(), t.meaning);
+  return within_width(t.name.empty() ? t.meaning + "\n" : fmt::format("{}  {}\n", t.header(), t.meaning));
 }
-
-constexpr std::size_t widest = 120;  // columns of a terminal that help fills
 
 // Key, unit and default, and the meaning behind them, or below where there is no room.
 std::string line_of(const SceneKey& k) {
   const std::string begin =
       fmt::format("  {:31} {:10} {:30}", k.key, k.unit, k.standard.empty() ? k.value : k.standard);
-  if (begin.size() <= 74 && begin.size() + 1 + k.meaning.size() <= widest) return begin + " " + k.meaning + "\n";
-  std::string text = begin.substr(0, begin.find_last_not_of(' ') + 1), line;
-  std::istringstream words(k.meaning);
-  for (std::string word; words >> word;) {
-    if (!line.empty() && 7 + line.size() + word.size() > widest) text += "\n      " + line, line.clear();
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return text + "\n      " + line + "\n";
+  if (begin.size() <= 74 && begin.size() + 1 + k.meaning.size() <= widest_line) return begin + " " + k.meaning + "\n";
+  std::string text = begin.substr(0, begin.find_last_not_of(' ') + 1);
+  for (const std::string& line : lines_of(k.meaning, widest_line - 6)) text += "\n      " + line;
+  return text + "\n";
 }
 
 }  // namespace
 
 std::string scene_key_help() {
-  std::string text = "Keys of a scene (TOML): name, unit, default, and below them the meaning. `ropewalk new` writes commented ones;\n`ropewalk help links` explains a table with an example.\n";
+  std::string text =
+      "Keys of a scene (TOML): name, unit, default, and below them the meaning. `ropewalk new` writes commented ones;\n"
+      "`ropewalk help links` explains a table with an example.\n";
   for (const SceneTable& t : scene_tables()) {
     text += "\n" + title_of(t) + key_lines(t);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "io/plain_text.hpp"
 #include "scene/expectation.hpp"
 #include "scene/key_table.hpp"
 #include "scene/scene.hpp"
@@ -232,7 +233,17 @@ std::string key_line(const SceneKey& k, const std::string* value) {
   if (!k.required())
     comment += fmt::format(" ({}{})", k.standard.rfind("required", 0) == 0 ? "" : "default: ",
                            k.standard.empty() ? k.value : k.standard);
-  return fmt::format("{:40} # {}\n", setting, comment);
+  constexpr std::size_t column = 41;
+  const std::vector<std::string> lines = lines_of(comment, widest_line - column - 2);
+  std::string text = fmt::format("{:{}} # {}\n", setting, column - 1, lines.front());
+  for (std::size_t n = 1; n < lines.size(); ++n) text += std::string(column, ' ') + "# " + lines[n] + "\n";
+  return text;
+}
+
+std::string comment_lines(const std::string& words) {
+  std::string text;
+  for (const std::string& line : lines_of(words, widest_line - 2)) text += "# " + line + "\n";
+  return text;
 }
 
 // All keys of a table; those that the block does not set stand as comments, or are left out of a brief text.
@@ -246,7 +257,7 @@ std::string keys_text(const SceneTable& table, const std::map<std::string, std::
 }
 
 std::string table_text(const SceneTable& table, const std::vector<Block>& blocks, bool brief) {
-  std::string text = brief ? "\n" : "\n# " + table.meaning + "\n";
+  std::string text = "\n" + (brief ? "" : comment_lines(table.meaning));
   bool any = false;
   for (const Block& b : blocks) {
     if (b.table != table.name) continue;
@@ -260,8 +271,7 @@ std::string table_text(const SceneTable& table, const std::vector<Block>& blocks
 }
 
 std::string text_without_expectations(const Recipe& recipe, bool brief) {
-  std::string text = fmt::format("# {}.\n", recipe.description);
-  if (const std::string words = dissipation_of(recipe.blocks); !words.empty()) text += "# " + words + "\n";
+  std::string text = comment_lines(std::string(recipe.description) + ".") + comment_lines(dissipation_of(recipe.blocks));
   text += brief ? "# All other keys have their defaults; `ropewalk help scene` lists them.\n\n"
                 : "# Every key has its unit in its name; lines with a # in front show keys that are not set.\n\n";
   std::map<std::string, std::string> top = {{"format", fmt::format("\"{}\"", scene_format)},

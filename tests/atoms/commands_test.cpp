@@ -166,6 +166,38 @@ TEST_F(Bridge, NoAtomStandsBetweenThePartsOfABrokenTube) {
   EXPECT_NEAR(farthest("torn/final.csv --parameters cnt-5-5-tersoff"), corner, 0.1);
 }
 
+// Frames that are no later than the one before, and atoms that are no tubes any more, would be taken for motion.
+TEST_F(Bridge, FramesThatDoNotFollowOneAnotherAreRefused) {
+  make_run();
+  for (int frame = 0; frame < 2; ++frame)
+    ASSERT_EQ(run(fmt::format("atoms made --frame {0} -o f{0}.xyz", frame)).code, 0);
+  const std::string first = slurp(dir / "f0.xyz"), second = slurp(dir / "f1.xyz");
+  // The atoms of the second frame by other numbers, and in nm.
+  std::vector<std::string> lines;
+  std::istringstream text(second);
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  std::string reversed = lines[0] + "\n" + lines[1] + "\n", small = reversed;
+  for (std::size_t k = 2; k < lines.size(); ++k) {
+    reversed += lines[lines.size() + 1 - k] + "\n";
+    double x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(lines[k].c_str(), "C %lf %lf %lf", &x, &y, &z), 3);
+    small += fmt::format("C {} {} {} 0 0\n", x / 10, y / 10, z / 10);
+  }
+  const std::tuple<const char*, std::string, const char*> cases[] = {
+      {"fall", second + first, "a frame at 0 ps comes after one at"},
+      {"twice", first + first, "a frame at 0 ps comes after one at 0 ps"},
+      {"reversed", first + reversed, "are they in another order than in the first frame"},
+      {"small", first + small, "lengths not in Angstrom"},
+  };
+  for (const auto& [name, frames, words] : cases) {
+    spit(dir / (name + std::string(".xyz")), frames);
+    const Outcome o = run(fmt::format("coarsen {0}.xyz -o {0}", name));
+    EXPECT_EQ(o.code, 2) << name;
+    EXPECT_NE(o.err.find(words), std::string::npos) << name << ": " << o.err;
+    EXPECT_FALSE(fs::exists(dir / name / "log.csv")) << name;
+  }
+}
+
 // Frames are 1 ps apart, and the limit is passed between two of them.
 TEST_F(Bridge, ARunIsSteppedAgainToItsLimit) {
   spit(dir / "rope.toml", std::string(twisted_rope) + "[limits]\nwall_twist = 0.007\n");
@@ -283,6 +315,34 @@ frames_every_ps = 0.2
   EXPECT_NE(run("calibrate fluctuations warm --after 149").err.find("30 are needed"), std::string::npos);
 }
 
+// The atoms would stand in the way of the same command. What LAMMPS said stays where the message names it; a stop leaves nothing.
+TEST_F(Bridge, ARelaxationThatFailsLeavesNothingInItsOwnWay) {
+  make_run();
+  fs::create_directory(dir / "there");
+  const auto left = [&] {
+    std::string names;
+    for (const auto& entry : fs::directory_iterator(dir / "there"))
+      if (entry.path().filename() != "lmp") names += entry.path().filename().string() + " ";
+    return names;
+  };
+  const auto lammps = [&](const char* lines) {
+    spit(dir / "there/lmp", std::string("#!/bin/sh\n") + lines);
+    fs::permissions(dir / "there/lmp", fs::perms::owner_all);
+  };
+  lammps("kill -TERM $PPID\nsleep 60\n");
+  const Outcome stopped = run("atoms made -o there/a.data --relax", "ROPEWALK_LMP=$PWD/there/lmp");
+  EXPECT_EQ(stopped.code, 143) << stopped.err;
+  EXPECT_EQ(left(), "");
+  lammps("echo 'ERROR: no atoms today'\nexit 1\n");
+  const Outcome failed = run("atoms made -o there/a.data --relax", "ROPEWALK_LMP=$PWD/there/lmp");
+  EXPECT_EQ(failed.code, 3) << failed.err;
+  const std::string folder = left();
+  EXPECT_EQ(folder.rfind("ropewalk-", 0), 0u) << folder;
+  EXPECT_NE(failed.err.find("there/" + folder.substr(0, folder.size() - 1) + "/atoms.in"), std::string::npos)
+      << failed.err;
+  EXPECT_TRUE(fs::exists(dir / "there" / folder.substr(0, folder.size() - 1) / "atoms.out"));
+}
+
 // States below the limits, relaxed by LAMMPS: the atoms have the energy that the model gives them.
 TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
   const double a = shipped("cnt-5-5-tersoff").element_length;
@@ -297,6 +357,22 @@ TEST_F(Bridge, RelaxedAtomsHaveTheEnergyOfTheModel) {
     EXPECT_NEAR(atoms / model, 1, 0.05);
     EXPECT_GT(placed, atoms);
     EXPECT_TRUE(fs::exists(dir / "a-relaxed.data"));
+  }
+}
+
+// Walls hold below the limit of twist and give way beyond it, where round ones are at rest as well.
+TEST_F(Bridge, WallsGiveWayBeyondTheirLimit) {
+  const ParameterSet set = shipped("cnt-10-10-tersoff");
+  for (const double part : {0.8, 1.3}) {
+    const Elements twisted = rod(9, set.element_length, {0, part * set.validity.twist_collapse / set.radius, 0});
+    spit(dir / "state.csv", state_csv(twisted.topology, twisted.state));
+    const Outcome relaxed = run("atoms state.csv --parameters cnt-10-10-tersoff -o a.data --relax --json --force");
+    ASSERT_EQ(relaxed.code, 0) << relaxed.err;
+    const double thickness = nlohmann::json::parse(relaxed.out).at(0)["thickness_over_width"];
+    if (part < 1)
+      EXPECT_GT(thickness, 0.95);
+    else
+      EXPECT_LT(thickness, 0.8);
   }
 }
 

@@ -107,6 +107,26 @@ TEST_F(AtomFile, LeavesOutAFrameThatIsCutOff) {
             std::string::npos);
 }
 
+// A simulation that goes on writes the frame at which it was stopped once more.
+TEST_F(AtomFile, LeavesOutTheFrameAtWhichASecondFileGoesOn) {
+  const auto dump = [](int step, double z) {
+    return fmt::format("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+                       "ITEM: ATOMS id element x y z\n1 C 0 0 {}\n",
+                       step, z);
+  };
+  AtomFiles dumps({file("a.dump", dump(0, 1) + dump(10, 2)), file("b.dump", dump(10, 2) + dump(20, 3))}, 1);
+  AtomFrame read;
+  std::vector<double> heights;
+  while (dumps.next(read)) heights.push_back(10 * read.positions[0].z());
+  EXPECT_EQ(heights, (std::vector<double>{1, 2, 3}));
+  // Frames that state no time are 1 ps apart, also from one file to the next.
+  const std::string frame = "1\ncomment\nC 0 0 0\n";
+  AtomFiles untimed({file("a.xyz", frame + frame), file("b.xyz", frame + frame)}, 1);
+  std::vector<double> times;
+  while (untimed.next(read)) times.push_back(read.time);
+  EXPECT_EQ(times, (std::vector<double>{0, 1, 2, 3}));
+}
+
 TEST_F(AtomFile, DamagedFilesNameTheLine) {
   EXPECT_NE(refusal({file("a.xyz", "2\ncomment\nC 0 0 0\nC 1 x 1\n")}).find("a.xyz:4: pos: \"x\" is not a number"),
             std::string::npos);

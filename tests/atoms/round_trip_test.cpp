@@ -144,6 +144,38 @@ TEST(RoundTripOfElements, AveragesTheNoiseOfAtoms) {
   EXPECT_GT(d.distance, 0.2 * 0.01 / std::sqrt(atoms));
 }
 
+// Velocities of atoms at 300 K: motion of their elements along each axis and turning about each has that
+// temperature.
+TEST(RoundTripOfElements, KeepsTheTemperatureOfAtoms) {
+  constexpr double kT = units::boltzmann * 300;
+  const ParameterSet set = shipped("cnt-5-5-tersoff");
+  const double a = set.element_length;
+  constexpr int n = 300;
+  const TubeReference reference = reference_of(set);
+  const FoundTubes found = found_in(atoms_of(rod(n, a, {}), reference));
+  ASSERT_EQ(found.tubes.size(), 1u);
+  std::mt19937 random(300);
+  std::normal_distribution<double> normal(0, std::sqrt(kT / units::carbon_mass));
+  std::vector<Vector3> velocities;
+  for (std::size_t i = 0; i < found.positions.size(); ++i)
+    velocities.emplace_back(normal(random), normal(random), normal(random));
+  const ElementFit fit(reference, a, n, found.tubes[0].atoms);
+  State state(n);
+  fit.fit(found.positions, state, 0);
+  fit.fit_velocities(found.positions, velocities, state, 0);
+  const double mass = set.element_mass(a), along = set.element_inertia(a),
+               across = mass * (0.5 * set.radius * set.radius + a * a / 12);
+  double energy[6] = {};  // in kT/2, means of a component of all elements
+  for (std::size_t e = 0; e < n; ++e) {
+    const Vector3 v = state.velocity[e], w = state.angular_velocity[e];
+    for (int k = 0; k < 3; ++k) {
+      energy[k] += mass * v[k] * v[k] / kT / n;
+      energy[3 + k] += (k == 2 ? along : across) * w[k] * w[k] / kT / n;
+    }
+  }
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(energy[k], 1, 3.5 * std::sqrt(2.0 / n)) << "component " << k;
+}
+
 TEST(AtomsOfElements, CountWithoutPlacingThem) {
   for (const char* name : {"cnt-8-2-tersoff", "cnt-17-0-tersoff"}) {
     const ParameterSet set = shipped(name);

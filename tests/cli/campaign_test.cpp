@@ -248,7 +248,8 @@ TEST_F(Campaign, PictureIsAFigureInThreeFormats) {
   EXPECT_EQ(svg.find("beyond "), std::string::npos) << "no limit was passed";
   spit(dir / "far.toml", text + "frames_every_ps = 2\n[limits]\ntwist_deg = 0.2\n");
   ASSERT_EQ(run("run far.toml --out far --quiet").code, 7) << slurp(dir / "stderr.txt");
-  ASSERT_EQ(run("picture far -o far.svg --curves torque_upper_nN_nm --x rotation_deg").code, 0);
+  ASSERT_EQ(run("picture far -o far.svg --curves torque_nN_nm --x rotation_deg").code, 0);
+  EXPECT_NE(slurp(dir / "far.svg").find(">torque (nN nm)<"), std::string::npos) << "of both ends";
   const std::string far = slurp(dir / "far.svg");
   for (const char* part : {">beyond twist_deg<", " beyond\" d="}) EXPECT_NE(far.find(part), std::string::npos) << part;
 }

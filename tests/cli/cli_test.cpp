@@ -63,6 +63,18 @@ TEST_F(Cli, HelpNamesEveryVerbAndUnits) {
   EXPECT_NE(links.find("breaks_at_nN"), std::string::npos) << links;
   EXPECT_EQ(links.find("spacing_nm"), std::string::npos) << links;
   EXPECT_EQ(run("help '[run]'").out.find("[run]\n"), 0u);
+  ASSERT_EQ(run("new wide --kind bend").code, 0);
+  bool code = false;  // examples and formulas stay as they are
+  for (const std::string& text : {o.out, keys, run("run --help").out, run("compare --help").out, run("help damping").out,
+                                  run("help grip").out, run("help slip").out, slurp(dir / "wide.toml")}) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      code = code != (line.find("```") != std::string::npos);
+      const auto columns =
+          std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+      EXPECT_TRUE(code || columns <= 120) << line;
+    }
+  }
   const std::string length = run("help length_nm").out;
   for (const char* word : {"[rope]  ", "[plies]  ", "length of the tubes"})
     EXPECT_NE(length.find(word), std::string::npos) << length;
@@ -1062,15 +1074,20 @@ TEST_F(Cli, NewtonsMethodFindsTheStateOfRestUnderTwist) {
   EXPECT_EQ(modes.code, 0) << modes.err;
 }
 
-// Stopped after every step and resumed, a curve of states of rest is the same bytes.
+// Stopped after every step and resumed, a curve of states of rest is the same bytes. The rope winds itself before it
+// is loaded, to the side of the moment to come: with the other hand all is the mirror image.
 TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
-  spit(dir / "s.toml",
-       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
-       "[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\n[statics]\nsteps = 3\n"
-       "[run]\nmode = \"relax\"\nsolver = \"newton\"\n");
+  const auto scene = [](const std::string& hand) {
+    return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 14\n"
+           "[twist]\nmoment_nN_nm = 12\nrate_nN_nm_per_ps = 1\nhand = \"" +
+           hand + "\"\n[statics]\nsteps = 3\n[run]\nmode = \"relax\"\nsolver = \"newton\"\n";
+  };
+  spit(dir / "s.toml", scene("right"));
+  spit(dir / "left.toml", scene("left"));
   const Outcome o = run("run s.toml --out whole");
   ASSERT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_THAT(o.out, HasSubstr("4 of 4 states of rest"));
+  EXPECT_THAT(o.out, HasSubstr("at 0 nN nm it left a saddle of the energy: it winds or bends there by itself"));
   const ropewalk::Equilibria rests = ropewalk::read_equilibria((dir / "whole/equilibria.csv").string());
   ASSERT_EQ(rests.size(), 4u);
   const std::vector<ropewalk::LogRow> log = ropewalk::read_log((dir / "whole/log.csv").string());
@@ -1081,6 +1098,12 @@ TEST_F(Cli, LoadStepsGiveACurveOfStatesOfRest) {
     EXPECT_LT(rests[k].force, 1e-4);
   }
   EXPECT_GT(log[4]["geometric_twist_deg"], log[3]["geometric_twist_deg"]);
+  EXPECT_GT(log[1]["geometric_twist_deg"], 1);
+  ASSERT_EQ(run("run left.toml --out left").code, 0);
+  const std::vector<ropewalk::LogRow> mirrored = ropewalk::read_log((dir / "left/log.csv").string());
+  ASSERT_EQ(mirrored.size(), log.size());
+  for (std::size_t k = 0; k < log.size(); ++k)
+    EXPECT_NEAR(mirrored[k]["geometric_twist_deg"], -log[k]["geometric_twist_deg"], 0.01) << k;
   EXPECT_THAT(slurp(dir / "whole/report.html"), HasSubstr("States of rest"));
   const auto steps = [&](std::size_t k) { return std::to_string(rests[k].step + 1); };
   EXPECT_EQ(run("run s.toml --out parts --steps " + steps(0)).code, 4);
@@ -1137,6 +1160,11 @@ TEST_F(Cli, EveryWrongFileGetsOneClearLine) {
     EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
     EXPECT_NE(o.err.find(expect[1].str()), std::string::npos) << entry.path() << "\n" << o.err << "\n" << expect[1];
     EXPECT_FALSE(fs::exists(dir / "never")) << entry.path();
+    // What is not there stands in no line.
+    const std::regex absent("is missing|is empty|there is nothing in|cannot be opened|and the set .* has no \\[contact");
+    if (!std::regex_search(o.err, absent)) {
+      EXPECT_TRUE(std::regex_search(o.err, std::regex("\\.(toml|csv):[0-9]+: "))) << o.err;
+    }
   }
   EXPECT_GE(count, 40);
 }
@@ -1159,9 +1187,16 @@ reading = "per-tube"
 rate_nN_nm_per_ps = 0.2
 hold_ps = 10
 )");
-  ASSERT_EQ(run("run rope.toml --out r --quiet").code, 0);
-  const Outcome o = run("errors r --json --quiet");
-  ASSERT_EQ(o.code, 0) << o.err;
+  // Repeats end where the run was asked to end, and not at the end of the scene.
+  const auto end_of = [&](const char* log) { return ropewalk::read_log((dir / log).string()).back()["time_ps"]; };
+  Outcome o;
+  for (const char* go_on : {"run rope.toml --out r --quiet --until 1", "resume r --quiet --until 21"}) {
+    ASSERT_EQ(run(go_on).code, 0);
+    o = run("errors r --json --quiet");
+    ASSERT_EQ(o.code, 0) << o.err;
+    EXPECT_EQ(end_of("r/errors/GJ-plus/log.csv"), end_of("r/log.csv")) << go_on;
+  }
+  EXPECT_NEAR(end_of("r/log.csv"), 21, 0.05);
   const Json errors = Json::parse(o.out);
   const Json twist = errors.at("at_the_end").at("twist_eV");
   const double value = twist.at("value"), parts = twist.at("parts").at("GJ");
@@ -1348,6 +1383,27 @@ tolerance = 0.2
   std::smatch cells;
   ASSERT_TRUE(std::regex_search(end, cells, std::regex("\"r\",1,[^,]+,([^,]+),([^,]+),"))) << end;
   EXPECT_NEAR(std::stod(cells[2]), torque.at("error").get<double>(), 0.01 * torque.at("error").get<double>());
+  // A maximum has its own error: of the largest torque of each run, not of the torques in one row.
+  const Json largest = found.at("results").at("torque_max_nN_nm");
+  EXPECT_GE(largest.at("value").get<double>(), torque.at("value").get<double>());
+  for (const char* part : {"statistics", "numerics", "parameters", "potential"})
+    EXPECT_GT(largest.at(part).get<double>(), 0) << part;
+  EXPECT_EQ(largest.at("runs_without"), 0);
+  EXPECT_TRUE(std::regex_search(o.out, std::regex("\nof the run +value[^\n]+\n(.+\n)*torque_max_nN_nm +[0-9.]+ ")))
+      << o.out;
+  EXPECT_TRUE(std::regex_search(slurp(dir / "r/report.html"), std::regex("Torque [^.]+ [0-9.]+ ± [0-9.]+ nN nm")));
+  ASSERT_EQ(run("picture r -o r.svg --curves torque_nN_nm").code, 0);
+  const std::string picture = slurp(dir / "r.svg");
+  for (const char* part : {"class=\"error e0\"", ">band: one standard error<"})
+    EXPECT_NE(picture.find(part), std::string::npos) << part;
+  const Outcome torsion = run("compare r --torsion --csv torsion.csv --svg torsion.svg");
+  ASSERT_EQ(torsion.code, 0) << torsion.err;
+  EXPECT_THAT(torsion.out,
+              HasSubstr("one point, so torsion.svg shows its torque_nN_nm against rotation_deg"));
+  EXPECT_THAT(slurp(dir / "torsion.svg"), HasSubstr("<svg"));
+  const std::string table = slurp(dir / "torsion.csv");
+  ASSERT_TRUE(std::regex_search(table, cells, std::regex("\n\"r\",1,[^,]+,[^,]+,([^,]+),([^,]+),"))) << table;
+  EXPECT_NEAR(std::stod(cells[2]), largest.at("error").get<double>(), 0.01 * largest.at("error").get<double>());
   EXPECT_EQ(run("run rope.toml --out r --force --quiet").code, 0) << "all that errors has left is of the run";
 }
 

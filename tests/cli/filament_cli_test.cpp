@@ -49,7 +49,7 @@ TEST_F(Filament, EndsInLineKeepTheDistanceOfTheirContact) {
 
 TEST_F(Filament, WhatNeedsALatticeSaysSo) {
   scene("mixed.toml", "[\"cellulose-36\", \"f-actin\"]\ntube_types = [0, 0, 0, 0, 1, 1, 1]");
-  refuses("check mixed.toml", "a filament knows its like alone");
+  refuses("check mixed.toml", "a filament has one with its own kind alone");
   scene("friction.toml", "\"cellulose-36\"", "[[friction]]\nfrom = \"atoms\"");
   refuses("check friction.toml", "no friction follows from it");
   refuses("calibrate friction cellulose-36", "no friction follows from it");

@@ -429,6 +429,17 @@ TEST_F(Surroundings, SweepsOfOneDirectory) {
   }
 }
 
+// Both would end with runs that "did not finish".
+TEST_F(Surroundings, ErrorsOfOneRunAreMadeOnce) {
+  spit(dir / "s.toml", scene("duration_ps = 0.1\n"));
+  ASSERT_EQ(run("run s.toml --out r --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const Outcome o = script("flock r/lock ropewalk errors r --numerics --quiet; echo beside $?\n"
+                           "ropewalk errors r --quiet > /dev/null; echo alone $?\nls r");
+  EXPECT_THAT(o.out, HasSubstr("beside 2\nalone 0\n")) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("ropewalk: r: is in use by ")) << o.err;
+  EXPECT_THAT(o.out, Not(HasSubstr("lock\n"))) << "the lock is taken away at the end";
+}
+
 TEST_F(Surroundings, NamesOfPointsFitIntoAFileSystem) {
   std::string values;
   for (const char* key : {"bend_deg", "twist_deg", "kink_curvature_per_nm", "wall_twist", "strain", "press_nm",

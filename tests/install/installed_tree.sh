@@ -116,7 +116,10 @@ growth_nN_per_nm = 1e-3
 duration_ps = 2
 time_step_fs = 20
 SCENE
+own_parts/my-ropewalk help wind | grep -q 'growth_nN_per_nm' || fail "the load of one's own has no help"
 own_parts/my-ropewalk run four.toml --out four --quiet > said || fail "ropewalk with four parts of one's own: $(cat said)"
+own_parts/my-ropewalk check four.toml > said
+grep -q 'forces with contact law beads, drive trap: they are the falls of the energy' said || fail "check: $(cat said)"
 own_parts/my-ropewalk help trap | grep -q 'stiffness_nN_per_nm' || fail "the force term of one's own has no help"
 python3 - <<'SCRIPT' || fail "the trap, or the law of beads, is not that of its formula"
 import csv, math
@@ -135,6 +138,17 @@ for name, found, wanted in (("trap", float(end["trap_eV"]), trapped), ("vdw", fl
     assert wanted != 0 and abs(found / wanted - 1) < 1e-4, (name, found, wanted)
 assert abs(float(end["balance_eV"])) < 1e-3 * float(end["kinetic_eV"]), end["balance_eV"]
 SCRIPT
+# The run says whose it is; programs without these parts refuse it by name, and there is no LAMMPS for it.
+grep -q '"program": "my-ropewalk"' four/manifest.json || fail "the manifest does not name the program"
+for verb in "report four" "observe four" "resume four --until 3"; do
+  "$ropewalk" $verb 2> said && fail "the program without these parts takes the run"
+  grep -q "was run by my-ropewalk, a program with parts of its own, and ropewalk lacks its scene kind pair" said ||
+    fail "ropewalk $verb: $(cat said)"
+done
+own_parts/my-ropewalk resume four --until 2.1 --quiet || fail "the program of the run does not resume it"
+own_parts/my-ropewalk export pair.toml --lammps never 2> said && fail "LAMMPS is given what it lacks"
+grep -q "pair.toml:3: pair: is not for LAMMPS: lmp-ropewalk has no scene kind pair" said || fail "export: $(cat said)"
+[ ! -e never ] || fail "export left a directory"
 own_parts/my-ropewalk run pair.toml --out other --wall-time 60 --slurm job.sh >/dev/null
 grep -q "$PWD/own_parts/my-ropewalk" job.sh || fail "the job starts another program: $(cat job.sh)"
 sed 's/^apart_nm.*/apart = 1.8/' pair.toml > bad.toml

@@ -143,16 +143,19 @@ class AtomsTest(FolderTest):
             warnings.simplefilter("ignore")
             universe = ropewalk.atoms_universe(self.run_)
             times = [frame.time_ps for frame in self.run_.frames]
+            even = [k * times[1] for k in range(len(times))]  # a DCD holds nothing else
             self.assertEqual([ts.time for ts in universe.trajectory], times)
             self.assertEqual(len(universe.residues), 7)
-            universe.atoms.write("md.dcd", frames="all")
+            universe.atoms.write("md.dcd", frames="all", dt=universe.trajectory.dt)
             universe.atoms.write("md.pdb")
             read = MDAnalysis.Universe("md.pdb", "md.dcd")
             for k, given in enumerate((universe, read, read.select_atoms("name C"))):
-                coarse = ropewalk.coarsen(given, f"coarse-{k}", frame_ps=times[1])
-                self.assertEqual(len(coarse.frames), len(times))
+                coarse = ropewalk.coarsen(given, f"coarse-{k}")
+                np.testing.assert_allclose([frame.time_ps for frame in coarse.frames], even if k else times, rtol=1e-6)
                 for frame, wanted in zip(coarse.frames, self.run_.frames):
                     self.assert_same_elements(frame, wanted)
+            apart = ropewalk.coarsen(read, "apart", frame_ps=0.25).frames
+            self.assertEqual([frame.time_ps for frame in apart[:3]], [0, 0.25, 0.5])
             one = ropewalk.atoms(self.run_, tubes=[1, 3]).to_mdanalysis()
             self.assertEqual(one.residues.resids.tolist(), [1, 3])
             self.assertEqual(set(one.atoms.tempfactors), set(range(self.run_.frames[0].position.shape[1])))
@@ -161,6 +164,34 @@ class AtomsTest(FolderTest):
             one.atoms.types = ["1", "2"] * (len(one.atoms) // 2) + ["1"] * (len(one.atoms) % 2)
             with self.assertRaisesRegex(ropewalk.InputError, "2 types of atoms without elements and masses"):
                 ropewalk.coarsen(one, "typed")
+
+    @unittest.skipUnless(MDAnalysis, "MDAnalysis is not installed")
+    def test_times_that_a_trajectory_does_not_hold_are_said(self):
+        from MDAnalysis.lib.formats.libdcd import DCDFile
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            universe = ropewalk.atoms_universe(self.run_.frames[:3])
+            universe.atoms.write("md.pdb")
+            # The header is that of a dump every 50 steps from step 100 on, in metal units and in real ones.
+            for unit, delta in (("ps", 0.001), ("fs", 1.0)):
+                with DCDFile(f"{unit}.dcd", "w") as file:
+                    file.write_header(remarks="Written by LAMMPS", natoms=len(universe.atoms), istart=100, nsavc=50,
+                                      delta=delta, is_periodic=0)
+                    for timestep in universe.trajectory:
+                        file.write(timestep.positions, np.zeros(6))
+                for reader in ("DCD", "LAMMPS"):
+                    read = MDAnalysis.Universe("md.pdb", f"{unit}.dcd", format=reader)
+                    with self.assertLogs("ropewalk", "WARNING") as told:
+                        coarse = ropewalk.coarsen(read, "coarse", force=True)
+                    self.assertIn(f"is taken as {unit}, and frames are 0.05 ps apart", told.output[0])
+                    np.testing.assert_allclose([frame.time_ps for frame in coarse.frames], [0.1, 0.15, 0.2], rtol=1e-6)
+            for name in ("md.xyz", "md.dcd"):
+                universe.atoms.write(name, frames="all")
+                with self.assertLogs("ropewalk", "WARNING") as told:
+                    coarse = ropewalk.coarsen(MDAnalysis.Universe("md.pdb", name), "coarse", force=True)
+                self.assertIn(f"{name}: MDAnalysis has no times of it", told.output[0])
+                np.testing.assert_allclose([frame.time_ps for frame in coarse.frames], [0, 1, 2], rtol=1e-6)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,19 @@
 """Simulations that Python steers: forces of one's own, hooks, loads that change, copies."""
 from __future__ import annotations
 
+import json
 import math
+import os
 import pickle
+import subprocess
 import unittest
 
 import numpy as np
 from support import ROPE, FolderTest
 
 import ropewalk
+from ropewalk.forces import name_of
+from ropewalk.programs import find_program
 
 # One tube between clamps, the upper one of which turns.
 TUBE = {
@@ -53,12 +58,59 @@ class OwnForceTest(FolderTest):
             run = ropewalk.run(scene, "run", steps=40, forces=[force], threads=1, force=True)
             simulation.step(40)
             np.testing.assert_allclose(run.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
-            with self.assertRaisesRegex(ropewalk.InputError, "begun with 1 of one's own, in Python, and would go on with none"):
+            with self.assertRaisesRegex(ropewalk.InputError, r"in Python: \w+( \(no energy\))?; it would go on with: none"):
                 ropewalk.resume("run")
             again = ropewalk.resume("run", steps=60, forces=[force], threads=1)
             simulation.step(20)
             self.assertEqual(again.log["step"][-1], 60)
             np.testing.assert_allclose(again.frames[-1].flat.position, simulation.state.flat.position, atol=1e-9)
+
+    # The program and the package know that the run had a force, and compute nothing of it without this force.
+    def test_nothing_repeats_a_run_without_its_forces(self):
+        program = find_program()
+        for force in (Trap(ropewalk.Scene(FREE)), pull):
+            name = name_of(force)
+            run = ropewalk.run(FREE, "run", steps=40, forces=[force], force=True)
+            self.assertIn(name, run.manifest["own_forces"])
+            for arguments in (["errors", "run"], ["check", "run", "--accuracy"], ["export", "run", "--lammps", "out"],
+                              ["modes", "run", "--anyway"], ["resume", "run", "--steps", "50"]):
+                said = subprocess.run([program, *arguments], capture_output=True, text=True)
+                self.assertEqual(said.returncode, 2, (arguments, said.stderr))
+                self.assertIn(name, said.stderr, arguments)
+                self.assertIn("ropewalk.resume(", said.stderr, arguments)
+            self.assertFalse(os.path.exists("out"))
+            self.assertFalse(os.path.exists("run/errors"))
+            for again in (run.simulation, lambda: ropewalk.Simulation(run.scene), lambda: ropewalk.run(run.scene, "b")):
+                with self.assertRaisesRegex(ropewalk.InputError, name):
+                    again()
+            self.assertEqual(run.simulation(forces=[force]).step_number, 40)
+
+    # Whoever reads the run finds the force by its name, and its energy among the parts.
+    def test_the_files_of_a_run_name_its_forces(self):
+        run = ropewalk.run(FREE, "run", steps=40, forces=[Trap(ropewalk.Scene(FREE), 0.3, 30), pull])
+        self.assertEqual(run.manifest["own_forces"], "Trap, pull (no energy)")
+        log = run.log
+        self.assertLess(log["own_forces_eV"][-1], -1)
+        total = sum(log[f"{part}_eV"] for part in ("stretch", "shear", "bend", "twist", "vdw", "own_forces", "kinetic"))
+        np.testing.assert_allclose(total - total[0] - log["work_eV"] + log["dissipated_eV"], log["balance_eV"], atol=1e-9)
+        with open("run/report.html", encoding="utf-8") as page:
+            html = page.read()
+        self.assertIn("Trap, pull (no energy)", html)
+        self.assertRegex(html, r"own forces (<b>)?.\d")
+        said = subprocess.run([find_program(), "observe", "run"], capture_output=True, text=True)
+        self.assertIn("Trap, pull (no energy)", said.stderr)
+
+    def test_other_forces_are_known_by_name_and_energy(self):
+        def push(now):
+            return -pull(now)
+
+        ropewalk.run(FREE, "run", steps=40, forces=[pull])
+        with self.assertRaisesRegex(ropewalk.InputError, r"pull \(no energy\); it would go on with: Trap"):
+            ropewalk.resume("run", steps=50, forces=[Trap(ropewalk.Scene(FREE))])
+        with self.assertRaisesRegex(ropewalk.InputError, r"pull \(no energy\) -> push \(no energy\)"):
+            ropewalk.resume("run", steps=50, forces=[push])
+        run = ropewalk.resume("run", steps=50, forces=[push], accept_changes=True)
+        self.assertEqual(run.manifest["own_forces"], "push (no energy)")
 
     def test_a_force_with_an_energy_closes_the_account(self):
         scene, off = ropewalk.Scene(FREE), []
@@ -152,7 +204,8 @@ class OwnForceTest(FolderTest):
 
     def test_what_is_wrong_is_said(self):
         for wrong, words in ((lambda now: np.zeros((3, 3)), r"\(70, 3\) is needed"),
-                             (lambda now: np.full((70, 3), np.nan), "not finite"),
+                             (lambda now: np.where(now.flat.position > now.step, 0, np.nan) if now.step else None,
+                              r"<lambda>, a force of one's own, at 0\.0\d+ ps, is not finite: \[.*\] on element \d+"),
                              (lambda now: np.zeros((70, 3), complex), "complex128: real numbers are needed"),
                              (lambda now: np.ma.masked_array(np.zeros((70, 3)), True), "masked array"),
                              (lambda now: np.full((70, 3), "1"), "real numbers are needed"),
@@ -161,6 +214,29 @@ class OwnForceTest(FolderTest):
                              (lambda now: (None, None, None if now.step else 1.0), "an energy at some times")):
             with self.assertRaisesRegex((ValueError, TypeError), words):
                 ropewalk.Simulation(FREE, forces=[wrong]).step()
+
+    def test_a_missing_return_is_told_once(self):
+        def forgets(now):
+            pull(now)
+
+        with self.assertLogs("ropewalk") as logged:
+            ropewalk.Simulation(FREE, forces=[forgets]).step(3)
+        self.assertEqual(len(logged.output), 1)
+        self.assertIn("forgets gives None at 0 ps", logged.output[0])
+
+    def test_the_manifest_says_in_one_line_why_a_force_ended_the_run(self):
+        def fails(now):
+            if now.step == 3:
+                raise RuntimeError("no wind")
+            return pull(now)
+
+        with self.assertLogs("ropewalk") as logged, self.assertRaisesRegex(RuntimeError, "no wind"):
+            ropewalk.run(FREE, "run", forces=[fails])
+        self.assertIn("ropewalk.resume(\"run\", forces=...) goes on", logged.output[-1])
+        with open("run/manifest.json", encoding="utf-8") as file:
+            reason = json.load(file)["reason"]
+        self.assertIn("RuntimeError: no wind", reason)
+        self.assertNotRegex(reason, r"\n|\\n|At:")
 
 
 class ChangeTest(FolderTest):

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# The jobs of `ropewalk run --slurm`, `sweep --slurm` and `threshold --slurm` on a cluster of one node, which this test starts as whoever runs it. ropewalk is
-# not on the PATH. Argument: ropewalk.
+# The jobs of `ropewalk run --slurm`, `sweep --slurm`, `threshold --slurm` and `export --lammps` on a cluster of one
+# node, which this test starts as whoever runs it. ropewalk is not on the PATH. Arguments: ropewalk, lmp-ropewalk.
 set -euo pipefail
 command -v slurmctld slurmd sbatch >/dev/null || { echo "slurm: skipped, apt-get install slurm-wlm" >&2; exit 77; }
 ropewalk=$(realpath "$1")
+lmp=${2:+$(realpath "$2")}
 work=$(mktemp -d)
 started=()
 finish() {
@@ -12,7 +13,7 @@ finish() {
 }
 trap finish EXIT
 fail() { echo "slurm: $*" >&2; tail -n 5 "$work"/slurm*.log "$work"/study/messages/slurm-*.txt >&2 || true; exit 1; }
-patiently() { for _ in $(seq 240); do "$@" && return; sleep 0.25; done; return 1; }
+patiently() { for _ in $(seq 1200); do "$@" && return; sleep 0.25; done; return 1; }
 cd "$work"
 
 mkdir state spool scenes elsewhere
@@ -72,16 +73,30 @@ patiently is_done || fail "the array does not end"
 [ "$(grep -c ',finished,' table.csv)" = 2 ] || fail "not all points are done: $(cat table.csv)"
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
 
-# One run in pieces: each job submits the next one.
-sed 's/^tubes = 1/tubes = 37/; s/^length_nm = 14/length_nm = 40/; s/^duration_ps = .*/duration_ps = 2.5/' scenes/rope.toml > scenes/long.toml
-"$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm long.sh >/dev/null
+# One run in pieces: each job submits the next one, which after the first piece has time for all the rest.
+sed 's/^tubes = 1/tubes = 37/; s/^length_nm = 14/length_nm = 40/; s/^duration_ps = .*/duration_ps = 12/' scenes/rope.toml > scenes/long.toml
+"$ropewalk" run scenes/long.toml --out long --wall-time 1 --slurm long.sh >/dev/null
 (cd elsewhere && sbatch ../long.sh >/dev/null) || fail "the job of a run is refused"
+patiently grep -q 'Submitted batch job' long.messages.txt || fail "one job was enough: $(cat long.messages.txt)"
+sed -i "s/--wall-time '1'/--wall-time '1000'/" long.sh
 patiently is_done || fail "the jobs of a run do not end: $(cat long.messages.txt)"
 grep -q '"status": "finished"' long/manifest.json || fail "the run is not done: $(cat long.messages.txt)"
-grep -q 'Submitted batch job' long.messages.txt || fail "one job was enough: $(cat long.messages.txt)"
 [ -z "$(ls elsewhere)" ] || fail "files are left where the job was submitted: $(ls elsewhere)"
-"$ropewalk" run scenes/long.toml --out long --wall-time 2 --slurm again.sh 2> said && fail "a job would resume another run"
+"$ropewalk" run scenes/long.toml --out long --wall-time 1 --slurm again.sh 2> said && fail "a job would resume another run"
 grep -q 'is there already' said || fail "an earlier run is not named: $(cat said)"
+
+# A job on two ranks of LAMMPS, which asks SLURM when it ends.
+if [ -n "$lmp" ]; then
+  mkdir bin && ln -s "$lmp" bin/lmp-ropewalk
+  sed 's/^duration_ps = .*/duration_ps = 1/' scenes/long.toml > scenes/ranks.toml
+  "$ropewalk" export scenes/ranks.toml --lammps ranks >/dev/null
+  sed -i 's/--ntasks=.*/--ntasks=2/; s/--time=.*/--time=00:02:00/' ranks/job.sh
+  (cd ranks && PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 sbatch job.sh >/dev/null) || fail "the job of ranks is refused"
+  patiently is_done || fail "the job of ranks does not end: $(cat ranks/messages.txt)"
+  ! grep -q 'does not tell' ranks/messages.txt || fail "a job of ranks does not know its end"
+  grep -q 'by 2 MPI' ranks/messages.txt || fail "not two ranks: $(cat ranks/messages.txt)"
+  "$ropewalk" import ranks >/dev/null || fail "what ranks wrote is not taken: $(cat ranks/messages.txt)"
+fi
 
 # A search for thresholds, one point a task; the same command then makes the page of all.
 { printf 'format = "ropewalk-sweep-1"\nscene = "rope.toml"\n[threshold]\nkey = "twist.moment_nN_nm"\nfrom = 1\nto = 9\n'

@@ -11,11 +11,13 @@ docs/how-to/python.md is the page to read first.
 from __future__ import annotations
 
 import os as _os
+import sys as _sys
 
 try:
     import numpy as _numpy  # noqa: F401
 except ImportError:
-    raise ImportError("ropewalk needs numpy: install it (Debian: python3-numpy)") from None
+    raise ImportError(f"ropewalk needs numpy, and {_sys.executable} has none: install it for this interpreter, or take "
+                      "the one that has it (Debian's python3-numpy is for /usr/bin/python3)") from None
 
 
 def _load_core() -> None:

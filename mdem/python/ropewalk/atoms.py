@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Iterable, Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from itertools import chain
@@ -182,17 +183,47 @@ def _frames_of_ase(images: Iterable[Any], name: str, frame_ps: Optional[float],
         yield image.positions / 10, image.get_velocities() * per_ps if moving else None, box, pbc, time
 
 
-def _frames_of_mdanalysis(group: Any, frame_ps: Optional[float],
+# As a number, a step of MD of carbon is shorter in ps and longer in fs.
+_LONGEST_STEP_PS = 0.05
+
+
+def _times_of_mdanalysis(trajectory: Any, name: str, frame_ps: Optional[float]) -> Callable[[int, Any], float]:
+    """The time of frame k and its Timestep, ps, as MDAnalysis has it; a warning says where it has none. A DCD of LAMMPS
+    holds the step in LAMMPS's unit of time and not the unit, which MDAnalysis takes for that of CHARMM, or for fs."""
+    if frame_ps is not None:
+        given = frame_ps
+        return lambda k, timestep: k * given
+    header = getattr(getattr(trajectory, "_file", None), "header", None)
+    if isinstance(header, dict) and str(header.get("remarks")).startswith("Written by LAMMPS"):
+        delta, first, every = float(header["delta"]), int(header["istart"]), int(header["nsavc"])
+        unit, step = ("ps", delta) if delta < _LONGEST_STEP_PS else ("fs", delta / 1000)
+        _log.warning("%s: LAMMPS left out its unit of time; its step of %.4g is taken as %s, and frames are %.4g ps apart; "
+                     "if they are not, say frame_ps", name, delta, unit, every * step)
+        return lambda k, timestep: (first + k * every) * step
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        apart = trajectory.ts.dt
+    unknown = "time" not in trajectory.ts.data and any("no dt" in str(warning.message) for warning in told)
+    # MDAnalysis writes such a DCD where it is not given dt.
+    unknown |= isinstance(header, dict) and header.get("nsavc") == 1 and abs(apart - 1) < 1e-6
+    if unknown and len(trajectory) > 1:
+        _log.warning("%s: MDAnalysis has no times of it, and takes frames to be 1 ps apart; if they are not, say frame_ps",
+                     name)
+    return lambda k, timestep: float(timestep.time)
+
+
+def _frames_of_mdanalysis(group: Any, name: str, frame_ps: Optional[float],
                           periodic: Optional[tuple[bool, bool, bool]]) -> Iterator[_FrameOf]:
-    for k, timestep in enumerate(group.universe.trajectory):
+    trajectory = group.universe.trajectory
+    time_of = _times_of_mdanalysis(trajectory, name, frame_ps)
+    for k, timestep in enumerate(trajectory):
         box = None
         if timestep.dimensions is not None and (periodic is None or any(periodic)):
             vectors = np.asarray(timestep.triclinic_dimensions, np.float64) / 10
             box = vectors if abs(np.linalg.det(vectors)) > 0 else None
         moving = timestep.has_velocities
-        time = k * frame_ps if frame_ps is not None else float(timestep.time)
         yield (group.positions.astype(np.float64) / 10, group.velocities.astype(np.float64) / 10 if moving else None, box,
-               periodic, time)
+               periodic, time_of(k, timestep))
 
 
 def _carbon_of_mdanalysis(group: Any, name: str) -> NDArray[np.bool_]:
@@ -265,7 +296,7 @@ def coarsen(
         group = atoms.atoms
         name = _named(getattr(group.universe.trajectory, "filename", None))
         carbon = _carbon_of_mdanalysis(group, name)
-        frames = _frames_of_mdanalysis(group, apart, flags)
+        frames = _frames_of_mdanalysis(group, name, apart, flags)
     else:
         images = iter([atoms] if hasattr(atoms, "numbers") else atoms)
         name = "atoms"

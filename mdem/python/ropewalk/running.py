@@ -61,10 +61,14 @@ def run(
         device: moves the elements: "gpu", "opencl:TEXT", "c++"; None: this processor alone (no unit)
         force: replaces an earlier run in `out`
         forces: forces of one's own, as Simulation takes them (eV/nm, eV), functions of the Instant alone: a run may go back
-            some steps. The program refuses to resume such a run; resume() takes the same forces again
+            some steps. No file holds them, only their names: resume() and Run.simulation() take them again, and the
+            program refuses such a run where it would compute forces
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
-    core = as_scene(scene)._to_run()
+    of = as_scene(scene)
+    if not forces:  # those of a run whose scene this is
+        of._core.refuse_missing_forces()
+    core = of._to_run()
     _core.run(core, os.fspath(out), force,
               _options(steps, until_ps, threads, on_limit, wall_time_s, instructions, device, progress, forces, core))
     return Run(out)
@@ -94,7 +98,7 @@ def resume(
         wall_time_s: stops with a checkpoint before the run has taken so long, s
         accept_changes: goes on although scene, parameter set or program are not what the run was begun with
         device: as of run(), "none": this processor alone; None: that of the run (no unit)
-        forces: those that the run was begun with (eV/nm, eV)
+        forces: those that the run was begun with (eV/nm, eV); others of as many, by their names, with accept_changes
         progress: called twice a second with the time step, the last one (0: not known) and a line of words (no unit)
     """
     core = Scene._of_run(os.fspath(directory))._core if forces else None

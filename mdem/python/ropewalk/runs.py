@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Optional, TypedDict
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from . import _core
 from .errors import InputError
+from .forces import OwnForce
 from .frames import _AMU, Frames
 from .log import Log
 from .scene import Scene
@@ -23,7 +25,7 @@ class Limit(TypedDict):
         key: as in the [limits] of a scene
         unit: of `limit` and `largest`; "" for a pure number
         limit: in `unit`; 0: not watched
-        largest: the largest value, in `unit`
+        largest: the value farthest beyond its limit, in `unit`, below 0 where a bond is pressed, as the limit is
         largest_at_ps: its time, ps
         tube, element: where, from 0; -1: nowhere (no unit)
         passed: whether the limit was passed
@@ -171,12 +173,15 @@ class Run:
         found: list[dict[str, Any]] = json.loads(_core.limits_json(self._file("limits.json")))["refinements"]
         return found
 
-    def simulation(self) -> Simulation:
+    def simulation(self, *, forces: Sequence[OwnForce] = ()) -> Simulation:
         """A simulation in memory that goes on from the last checkpoint of the run (units as of Simulation).
 
         The files of the run stay as they are.
+
+        Arguments:
+            forces: those that the run was begun with (eV/nm, eV)
         """
-        out = Simulation(self._scene)
+        out = Simulation(self._scene, forces=forces)
         out._core.restore_run(self._path)
         return out
 

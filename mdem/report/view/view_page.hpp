@@ -41,7 +41,7 @@ struct ViewMark {
 struct ViewInput {
   std::string name;
   std::vector<int> tube_begin;  // as of a Topology
-  // Of each tube: the tube of the scene that it is a piece of, and where in it the piece begins. Both from 0.
+  // For each tube: the tube of the scene that it is a piece of, and where in it the piece begins. Both from 0.
   std::vector<std::array<int, 2>> piece_of;
   std::vector<double> tube_radius;  // nm, of each tube
   // One entry a frame, in the order of time. Element e of tube t reaches from joint e + t to joint e + t + 1.

@@ -50,7 +50,7 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
     const auto tubes = std::count(t.tube_type.begin(), t.tube_type.end(), static_cast<int>(k));
     add(k == 0 ? "parameters" : "parameters, type " + std::to_string(k), scene.sets[k].name,
         (scene.sets.size() > 1 ? fmt::format("{} tubes, ", tubes) : "") + "hash " + scene.sets[k].hash);
-    add("grade", grade_of(scene.sets[k]).words(), "how far the set stands for its tube");
+    add("grade", grade_of(scene.sets[k]).words(), "how well the set represents its tube");
   }
   add("contact law", scene.contact.law,
       scene.contact.legacy_torque ? "legacy torque: not a gradient, energy is not conserved" : "full gradient");
@@ -63,7 +63,10 @@ void add_run_facts(const Scene& scene, const Prepared& p, const Manifest& m, Rep
   add("seed", fmt::format("{}", m.seed));
   add("program", fmt::format("ropewalk {} ({})", m.version, m.git_id),
       fmt::format("{}, {}", m.compiler, m.build_type));
+  if (!m.own_parts.empty()) add("of its own", m.own_parts, "parts that " + m.program + " has and no other program");
   add("wall time", fmt::format("{:.0f} s on {} threads", m.wall_seconds, m.threads), "started " + m.started);
+  if (!m.own_forces.empty())
+    add("forces of one's own", m.own_forces, "functions of Python, which no file of this run holds");
   if (!m.device.empty()) add("device", m.device, "moved the elements that no load acts on");
 }
 
@@ -78,7 +81,7 @@ void add_strength(const Scene& scene, ReportInput& in) {
     in.facts.push_back({"strength",
                         fmt::format("{:.3g} GPa, {:.3g} N/tex, at a strain of {:.3g}", r.strength,
                                     r.strength_N_per_tex, r.strength_strain),
-                        "the largest stress in the log, over the cells of the cross-section"});
+                        "the largest stress in the log, over the cells of the cross-section; strain since the pull began"});
   in.facts.push_back({"broken",
                       fmt::format("{:.0f} of {:.0f} links and {:.0f} bonds of tubes", last["links_broken"],
                                   last["links_formed"], last["bonds_broken"]),
@@ -105,7 +108,7 @@ void add_size(const Scene& scene, const Observer& observer, ReportInput& in) {
        "by tan β = π d T, with the β of the last row; yarn_diameter_um in [periodic] names another"});
 }
 
-// Of a film: how its tubes hang together, at first and in the end.
+// Adds how the tubes of a film hang together, at first and in the end.
 void add_network(const Scene& scene, const StoredEvents& events, const std::vector<StoredFrame>& frames,
                  ReportInput& in) {
   if (frames.empty()) return;
@@ -185,6 +188,7 @@ ReportInput gather(const RunDirectory& dir, const Scene& scene, const Prepared& 
   if (std::filesystem::exists(dir.limits())) in.watched = read_limits(dir.limits());
   if (std::filesystem::exists(dir.equilibria())) in.equilibria = read_equilibria(dir.equilibria());
   in.results = results_of(dir, p);
+  in.result_errors = errors_of_results(dir);
   add_strength(scene, in);
   const Observer observer = make_observer(scene, p);
   in.rope = is_rope(p, observer);

@@ -214,7 +214,7 @@ double rim_of(const Scene& scene, const Interaction& interaction) {
 void PeriodicDrive::add_loads(const Scene& scene, const Topology& topology, const Interaction& interaction,
                               LoadsAndConstraints& loads) const {
   const double rim = load.turns.empty() ? 0 : rim_of(scene, interaction);
-  loads.add(load.on_tubes(topology, interaction.cutoff(), rim, scene.path));
+  loads.add(load.on_tubes(topology, interaction.cutoff(), rim, place_in(scene, "periodic.images")));
 }
 
 // Refuses loads on images: an image moves with its original, whatever load acts on the image.
@@ -293,7 +293,7 @@ int PeriodicDrive::images(double reach) const {
 }
 
 PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, double rim,
-                                    const std::string& path) const {
+                                    const InputError::Place& images_key) const {
   PeriodicLoad out = *this;
   if (!turns.empty()) {
     ROPEWALK_EXPECTS(rim > 0);
@@ -315,7 +315,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, doub
   ROPEWALK_EXPECTS(out.images > 0 && topology.elements() % topology.strands() == 0);
   if (const int needed = images_within(reach / a, least); out.images < needed)
     throw InputError(
-        {path, 0, "periodic.images"},
+        images_key,
         fmt::format("is {}, and the contact reaches {:.3g} nm{}", out.images, reach,
                     needed > images_within(reach / a, 0)
                         ? fmt::format(", {} elements of a slice at its least strain, {:.3g}", needed, least)

@@ -23,6 +23,7 @@
 
 #include <vector>
 
+#include "model/error.hpp"
 #include "scene/drive.hpp"
 #include "sim/dynamics/schedule.hpp"
 
@@ -40,7 +41,7 @@ class PeriodicLoad : public Load {
   // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres; `rim`
   // (nm): where the axes of the outermost tubes stand, for turns. Throws InputError where the images do not reach
   // as far.
-  PeriodicLoad on_tubes(const Topology& topology, double reach, double rim, const std::string& path) const;
+  PeriodicLoad on_tubes(const Topology& topology, double reach, double rim, const InputError::Place& images_key) const;
   // Winds straight tubes evenly about the z axis where the slice is twisted from the start.
   void wind(State&) const;
   // Puts the images where they belong.
@@ -58,7 +59,7 @@ class PeriodicLoad : public Load {
   void add_forces(const State&, double time, std::vector<PointLoad>&) const override;
   std::string needs_time() const override;
   std::optional<LoadEffect> effect() const override;
-  // The images.
+  // The ends of the rope are the images of its elements.
   void add_ends(EndElements& ends) const override {
     for (const End end : {lower_end, upper_end})
       ends[end].insert(ends[end].end(), ends_[end].begin(), ends_[end].end());

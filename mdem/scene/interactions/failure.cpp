@@ -84,6 +84,21 @@ class TubeFailure : public ForceTerm {
   std::string name() const override { return "failure"; }
   const std::vector<char>* broken_bonds() const override { return all_.empty() ? nullptr : &broken_; }
 
+  Strength strength(int type) const override {
+    Strength out;
+    out.moment = law_.moment;
+    bool first = true;
+    for (int t = 0; t < here_.tubes(); ++t)
+      for (int i = here_.tube_begin[t]; here_.tube_type[t] == type && i < here_.tube_begin[t + 1]; ++i) {
+        const auto e = static_cast<std::size_t>(i);
+        if (limit_[e] == no_bond || broken_[e]) continue;
+        out.weakest = first ? limit_[e] : std::min(out.weakest, limit_[e]);
+        out.strongest = first ? limit_[e] : std::max(out.strongest, limit_[e]);
+        first = false;
+      }
+    return out;
+  }
+
   // Bonds that had broken before the start are where they are at the start.
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {
@@ -256,7 +271,11 @@ class FailureDrive : public Drive {
   void add_terms(const Scene&, const Topology& topology, const State&, Interaction& interaction) const override {
     add_term(std::make_shared<TubeFailure>(law, topology), interaction);
   }
-  std::string why_not_split() const override { return "[failure] has limits of single bonds"; }
+  // Strain and moment count over a diameter of tube, whatever the bonds in it.
+  std::string why_not_split() const override {
+    return law.deviation > 0 ? "[failure] strain_deviation draws a strain for every bond, and of shorter elements others"
+                             : "";
+  }
   std::string why_not_lengthened() const override { return ""; }
 };
 

@@ -111,7 +111,7 @@ FrictionLaw law_of(const PairFriction& f, const DryFriction& typed, std::vector<
           f.path};
 }
 
-// Of all pairs of tube types, or the pair that is given.
+// Friction by the atoms of all pairs of tube types, or of the pair that is given.
 std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& typed,
                                        const std::vector<std::string>& folders, const InputError::Place& place) {
   std::vector<FrictionLaw> laws;

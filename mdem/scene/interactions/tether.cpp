@@ -45,6 +45,7 @@ class Tether : public ForceTerm {
 
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<Tether>(*this); }
   std::string name() const override { return "tether"; }
+  bool forces_follow_from_places() const override { return true; }
 
   // Where one process has all elements, the others have nothing to do with it.
   void prepare(const ListedScene& scene) override {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "scene/bounds.hpp"
 #include "scene/memory_size.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene.hpp"
 #include "scene/spacing.hpp"
 
@@ -52,8 +52,9 @@ std::string headers() {
 const std::vector<SceneKind>& scene_kinds() { return kinds_of_scenes(); }
 
 bool add_scene_kind(SceneKind kind) {
-  assert(std::none_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
-                      [&](const SceneKind& other) { return other.table.name == kind.table.name; }));
+  register_own_part(std::any_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
+                                [&](const SceneKind& other) { return other.table.name == kind.table.name; }),
+                    "scene kind", kind.table.name);
   kinds_of_scenes().push_back(std::move(kind));
   return true;
 }

@@ -1,8 +1,9 @@
 #include "scene/laws/contact_law_kind.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
+
+#include "scene/own_parts.hpp"
 
 namespace ropewalk {
 
@@ -25,7 +26,7 @@ std::vector<ContactLawKind>& laws_of_contact() {
 const std::vector<ContactLawKind>& contact_law_kinds() { return laws_of_contact(); }
 
 bool add_contact_law(ContactLawKind kind) {
-  assert(!contact_law_kind(kind.name) && kind.name != "none");
+  register_own_part(contact_law_kind(kind.name) || kind.name == "none", "contact law", kind.name);
   laws_of_contact().push_back(std::move(kind));
   return true;
 }

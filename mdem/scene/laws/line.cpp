@@ -36,7 +36,7 @@ void check_mixture(const TomlTable& top, const Scene& scene) {
     if (set.filament || scene.sets[0].filament) {
       if (set.hash == scene.sets[0].hash) continue;
       throw top.error("parameters",
-                      fmt::format("{} and {} have no contact law between one another: a filament knows its like alone",
+                      fmt::format("{} and {} have no contact law between one another: a filament has one with its own kind alone",
                                   scene.sets[0].name, set.name),
                       "take one of them, or [contact] law = \"none\"");
     }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "scene/bounds.hpp"
 #include "scene/drive_kind.hpp"
 #include "scene/end_moment.hpp"
+#include "scene/own_parts.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_place.hpp"
 
@@ -158,8 +158,9 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
 const std::vector<LoadKind>& load_kinds() { return kinds_of_loads(); }
 
 bool add_load_kind(LoadKind kind) {
-  assert(std::none_of(kinds_of_loads().begin(), kinds_of_loads().end(),
-                      [&](const LoadKind& other) { return other.name == kind.name; }));
+  register_own_part(std::any_of(kinds_of_loads().begin(), kinds_of_loads().end(),
+                                [&](const LoadKind& other) { return other.name == kind.name; }),
+                    "load", kind.name);
   kinds_of_loads().push_back(std::move(kind));
   return true;
 }

@@ -33,7 +33,7 @@ void complete(const TomlTable& t, const Scene& scene, Damping& d) {
     squared += longer * longer / count;
     rate += d.bond.rate / (longer * longer) / count;
   }
-  // Not asked for where it is not there: no misspelt key shall be taken for this one.
+  // t.has() would propose this key, which is that of earlier versions, for a misspelt one.
   const bool typed_per_pair = std::binary_search(t.keys().begin(), t.keys().end(), per_pair);
   if (typed_per_pair && t.has(per_length))
     throw t.error(per_pair, fmt::format("and {} are both given", per_length), "take this one away");

@@ -117,7 +117,7 @@ bool are_equal(const Schedule& a, const Schedule& b) {
   return sum_of({{1, a}, {-1, b}}).largest() <= 1e-9 * std::max(a.largest(), b.largest());
 }
 
-// Of each tube where the scene gives the same one to each, else in total.
+// The moment on each tube where the scene gives the same one to each, else the total.
 MomentTerms moment_terms(const EndDrives& all, End end) {
   std::vector<const EndDrive*> drives = loaded(all, end, LoadEffect::about_z);
   drives.erase(std::remove_if(drives.begin(), drives.end(), [](const EndDrive* d) { return !d->at_rope_end; }),

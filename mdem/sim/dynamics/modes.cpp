@@ -85,7 +85,7 @@ class Inverse {
   SlabLu lu_;
 };
 
-// Of unit kinetic energy, and turned so that as much as possible of it is real.
+// The motion with unit kinetic energy, and with the phase that makes as much of it real as possible.
 VectorXcd normal(const Quadratic& q, VectorXcd u) {
   const Complex squares = (u.array().square() * q.mass.array()).sum();
   if (std::abs(squares) > 0) u *= std::sqrt(std::conj(squares) / std::abs(squares));

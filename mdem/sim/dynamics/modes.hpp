@@ -46,7 +46,7 @@ struct ModeSearch {
   // what stands alone, and no error if there is nothing.
   int more_vectors = 40, restarts = 300;
   bool may_find_none = false;
-  double tolerance = 1e-11;  // of 1/(rate - shift)
+  double tolerance = 1e-11;  // relative error of 1/(rate - shift)
 };
 
 struct Modes {

@@ -241,7 +241,7 @@ Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
       force.scale(by);
     }
   };
-  // Of length one, and orthogonal to others; false: nothing is left of it.
+  // Makes a direction orthogonal to others and of length one; false: nothing is left of it.
   const auto orthonormal = [&](Direction& d, const std::vector<const Direction*>& others) {
     const double before = mass_product(d.motion, d.motion);
     for (const Direction* other : others) d.add(-mass_product(d.motion, other->motion), *other);

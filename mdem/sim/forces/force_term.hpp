@@ -26,6 +26,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -138,6 +139,12 @@ class ForceTerm {
   virtual void add_in_kick(const State&, const ForceRows& /*total*/, const Segment& /*part*/,
                            const ForceRows& /*out*/) const {}
 
+  // Whether its forces follow from the places of the elements, its memory and nothing else: forecasts then ask it
+  // for a state that no step has led to.
+  virtual bool forces_follow_from_places() const { return false; }
+  // What it does to tubes that a forecast of their limits leaves out, as "what links pull"; empty: nothing that counts.
+  virtual std::string not_foreseen() const { return ""; }
+
   // Adds the derivatives of the term's forces by the places and turns of the elements: `add` takes the block of
   // minus the derivative of the force and torque on i by those of j, for each pair with one, both ways. Turns are
   // those of sim/dynamics/tangent.hpp. False: the term has no tangent, and statics refuses it by its name.
@@ -167,6 +174,13 @@ class ForceTerm {
   // Bonds that hold nothing any more, as flags of the elements before them; null: all hold. One term of a scene can
   // have some. Only advance() and set_memory() change them.
   virtual const std::vector<char>* broken_bonds() const { return nullptr; }
+
+  // Where the bonds of tubes of this type break that hold now: the strains of the weakest and of the strongest one,
+  // and the bending moment (eV). Infinite: they do not.
+  struct Strength {
+    double weakest = std::numeric_limits<double>::infinity(), strongest = weakest, moment = weakest;
+  };
+  virtual Strength strength(int /*type*/) const { return {}; }
 
   // What acts from the start on, for the account.
   virtual long begun_at_start() const { return 0; }

@@ -61,9 +61,9 @@ class AllowedMotions {
   std::vector<Eigen::VectorXd> spins() const;
   std::vector<Eigen::VectorXd> wholes() const;
 
-  // Of a slice whose period is free: the force on the period (eV/nm) in a force as project_force() has it; that
-  // force without it; and the motion that strains all by the same part, of unit growth of the period. Else: 0, the
-  // same, empty.
+  // A slice whose period is free: the force on the period (eV/nm) in a force as project_force() has it; that force
+  // without it; and the motion that strains all by the same part, of unit growth of the period. Else: 0, the same,
+  // empty.
   double force_on_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd without_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd stretch() const;

@@ -14,10 +14,10 @@ namespace {
 
 // As measured; docs/performance.md.
 constexpr double first_steps = 20, next_steps = 8, products_of_step = 30, solves_of_modes = 130;
-constexpr double sparse_copies = 9;       // of K, for the modes
-constexpr double bytes_per_second = 4e9;  // of a decomposition that is read again for each solution
+constexpr double sparse_copies = 9;       // copies of K for the modes
+constexpr double bytes_per_second = 4e9;  // rate at which each solution reads the decomposition
 
-// Of the processor: others may use it as well.
+// Processor time of some work: other programs may use the processor as well.
 template <class Work>
 double seconds_of(const Work& work) {
   const std::clock_t began = std::clock();

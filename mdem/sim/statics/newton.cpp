@@ -19,7 +19,6 @@ constexpr int most_tries = 25;             // tries of one step
 constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
 constexpr double nearly_free = 0.1;        // 1/ps: with a smaller shift only soft motions are held back
 constexpr double fire_until = 0.05;        // eV/nm: smaller forces are those of contacts that have formed
-constexpr double most_widened = 8;         // times NewtonOptions::farthest
 constexpr long fire_steps = 300;           // after which Newton's method has a turn
 
 VectorXd forces_of(const Simulation& s) {
@@ -27,6 +26,12 @@ VectorXd forces_of(const Simulation& s) {
   for (std::size_t i = 0; i < s.state().size(); ++i)
     f.segment<6>(6 * static_cast<Eigen::Index>(i)) << s.forces().force[i], s.forces().torque[i];
   return f;
+}
+
+Vector3 across(const Vector3& turn, const Vector3& axis) { return turn - turn.dot(axis) * axis; }
+
+Quaternion rotation_by(const Vector3& turn) {
+  return Quaternion(Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()));
 }
 
 // A part of a step that was solved for.
@@ -125,67 +130,94 @@ Solution NewtonStatics::solve(const At& at, double shift, const VectorXd& b, dou
   return found;
 }
 
-// A tube that touches no other one may go far, as long as it does not turn much: what turns by t along straight
-// lines becomes longer by t^2/2.
+// How each section moves as one body: along `shift`, and by `angle` about an axis through its centre.
+struct NewtonStatics::SectionMove {
+  Vector3 centre = Vector3::Zero(), axis = Vector3::Zero(), shift = Vector3::Zero();
+  double angle = 0;
+};
+
+std::vector<NewtonStatics::SectionMove> NewtonStatics::section_moves(const VectorXd& d) const {
+  const State& s = s_.state();
+  std::vector<SectionMove> all(static_cast<std::size_t>(sections_.count));
+  std::vector<double> elements(all.size(), 0), arms(all.size(), 0);
+  for (std::size_t i = 0; i < s.size() && !all.empty(); ++i) {
+    const auto k = static_cast<std::size_t>(sections_.of[i]);
+    all[k].centre += s.position[i];
+    all[k].shift += d.segment<3>(6 * static_cast<Eigen::Index>(i));
+    all[k].axis += axis_of(s.orientation[i]);
+    elements[k] += 1;
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].centre /= elements[k];
+    all[k].shift /= elements[k];
+    all[k].axis.normalize();
+  }
+  for (std::size_t i = 0; i < s.size() && !all.empty(); ++i) {
+    const auto k = static_cast<std::size_t>(sections_.of[i]);
+    const Vector3 turn = all[k].axis.cross(Vector3(s.position[i] - all[k].centre));
+    all[k].angle += turn.dot(Vector3(d.segment<3>(6 * static_cast<Eigen::Index>(i))) - all[k].shift);
+    arms[k] += turn.squaredNorm();
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].angle = arms[k] > 0 ? all[k].angle / arms[k] : 0;
+  return all;
+}
+
+// Turns of whole sections count by their angle alone: they change nothing between tubes. A tube that touches no
+// other one may go far, as long as it does not turn much: what turns by t along straight lines becomes longer by
+// t^2/2.
 double NewtonStatics::farthest(const VectorXd& d) const {
-  constexpr double of_turns = 3;
+  constexpr double of_turns = 3, arm_of_sections = 0.5;
   const bool alone = !s_.interaction().law || s_.topology().tubes() == 1;
+  const std::vector<SectionMove> sections = section_moves(d);
   double most = 0;
+  for (const SectionMove& section : sections) most = std::max(most, arm_of_sections * std::fabs(section.angle));
   for (int t = 0; t < s_.topology().tubes(); ++t)
     for (int e = s_.topology().tube_begin[t]; e < s_.topology().tube_begin[t + 1]; ++e) {
       const auto row = 6 * static_cast<Eigen::Index>(e);
-      const double turn = s_.topology().type_of(t).radius * d.segment<3>(row + 3).norm();
-      most = std::max(most, alone ? of_turns * turn : std::max(turn, d.segment<3>(row).norm()));
+      const auto i = static_cast<std::size_t>(e);
+      Vector3 move = d.segment<3>(row), turn = d.segment<3>(row + 3);
+      if (!sections.empty()) {
+        const SectionMove& section = sections[static_cast<std::size_t>(sections_.of[i])];
+        const Vector3 angle = section.angle * section.axis;
+        move -= angle.cross(Vector3(s_.state().position[i] - section.centre));
+        turn = across(turn - angle, axis_of(s_.state().orientation[i]));
+      }
+      const double by_turn = s_.topology().type_of(t).radius * turn.norm();
+      most = std::max(most, alone ? of_turns * by_turn : std::max(by_turn, move.norm()));
     }
   return most;
 }
 
 // A section of a rope that turns about its axis goes along the arc and not along its tangent, which would make it
-// wider.
-VectorXd NewtonStatics::on_arcs(const VectorXd& d) const {
+// wider, and takes with it what its elements do besides: each turns about its own axis, then that axis tilts. Both
+// in one rotation would shear the tubes by half of their product. `onward` becomes the direction at the end of the
+// way.
+VectorXd NewtonStatics::on_arcs(const VectorXd& d, VectorXd& onward) const {
+  onward = d;
   if (sections_.count == 0) return d;
-  const auto count = static_cast<std::size_t>(sections_.count);
+  const std::vector<SectionMove> sections = section_moves(d);
   const State& s = s_.state();
-  struct Section {
-    Vector3 centre = Vector3::Zero(), axis = Vector3::Zero(), shift = Vector3::Zero();
-    double elements = 0, moment = 0, arms = 0;
-  };
-  std::vector<Section> all(count);
-  const auto row = [](std::size_t i) { return 6 * static_cast<Eigen::Index>(i); };
-  const auto of = [&](std::size_t i) -> Section& { return all[static_cast<std::size_t>(sections_.of[i])]; };
+  VectorXd out(d.size());
   for (std::size_t i = 0; i < s.size(); ++i) {
-    Section& section = of(i);
-    section.centre += s.position[i];
-    section.shift += d.segment<3>(row(i));
-    section.axis += axis_of(s.orientation[i]);
-    section.elements += 1;
-  }
-  for (Section& section : all) {
-    section.centre /= section.elements;
-    section.shift /= section.elements;
-    section.axis.normalize();
-  }
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    Section& section = of(i);
-    const Vector3 turn = section.axis.cross(Vector3(s.position[i] - section.centre));
-    section.moment += turn.dot(Vector3(d.segment<3>(row(i))) - section.shift);
-    section.arms += turn.squaredNorm();
-  }
-  VectorXd out = d;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const Section& section = of(i);
-    if (!(section.arms > 0)) continue;
-    const double angle = section.moment / section.arms;
-    const Vector3 arm = s.position[i] - section.centre;
-    const Vector3 rest = Vector3(d.segment<3>(row(i))) - section.shift - angle * section.axis.cross(arm);
-    out.segment<3>(row(i)) = section.shift + Eigen::AngleAxisd(angle, section.axis) * arm - arm +
-                             Eigen::AngleAxisd(0.5 * angle, section.axis) * rest;
+    const auto row = 6 * static_cast<Eigen::Index>(i);
+    const SectionMove& section = sections[static_cast<std::size_t>(sections_.of[i])];
+    const Vector3 angle = section.angle * section.axis, arm = s.position[i] - section.centre,
+                  move = Vector3(d.segment<3>(row)) - section.shift - angle.cross(arm),
+                  t = axis_of(s.orientation[i]), own = Vector3(d.segment<3>(row + 3)) - angle,
+                  tilt = across(own, t);
+    const double spin = own.dot(t);
+    const Quaternion q(Eigen::AngleAxisd(section.angle, section.axis)), tilts = rotation_by(tilt);
+    const Eigen::AngleAxisd whole(q * tilts * rotation_by(spin * t));
+    out.segment<3>(row) = section.shift + q * (arm + move) - arm;
+    out.segment<3>(row + 3) = whole.angle() * whole.axis();
+    onward.segment<3>(row) = section.shift + q * (angle.cross(Vector3(arm + move)) + move);
+    onward.segment<3>(row + 3) = angle + q * (tilt + spin * (tilts * t));
   }
   return out;
 }
 
 bool NewtonStatics::move(const VectorXd& d, double passes) {
-  const VectorXd along = on_arcs(d);
+  const VectorXd along = on_arcs(d, onward_);
   Vec3Array linear(s_.state().size()), angular(s_.state().size());
   for (std::size_t i = 0; i < s_.state().size(); ++i) {
     const auto row = 6 * static_cast<Eigen::Index>(i);
@@ -214,14 +246,32 @@ std::optional<VectorXd> NewtonStatics::falling_motion(const At& at) {
   return std::nullopt;
 }
 
-// To the side where the energy falls farther.
-bool NewtonStatics::push_along(const VectorXd& motion) {
+// Work along d of what NewtonOptions::loads_to_come adds to the loads; 0 where none are known.
+double NewtonStatics::work_to_come(const At& at, const VectorXd& d) const {
+  const double passes = options_.loads_to_come - s_.time();
+  if (!(passes > 0)) return 0;
+  State then = s_.state();
+  then.time += passes;
+  VectorXd of_led;
+  at.k->multiply(led(passes), of_led);
+  VectorXd added = load_forces(s_.loads(), then) - load_forces(s_.loads(), s_.state()) - of_led;
+  at.allowed.project_force(added);
+  return added.dot(d);
+}
+
+// To the side where the energy falls farther. A state that is its own mirror image has none.
+bool NewtonStatics::push_along(const At& at, const VectorXd& motion) {
+  constexpr double alike = 0.01;  // part of the fall
   const VectorXd d = motion * (0.1 * s_.topology().largest_radius() / farthest(motion));
+  const double to_come = work_to_come(at, d);
   const Simulation before = s_;
   std::optional<Simulation> best;
   for (const double sign : {1.0, -1.0}) {
     s_ = before;
-    if (move(sign * d) && (!best || energy_of(s_) < energy_of(*best))) best = s_;
+    if (!move(sign * d)) continue;
+    const double further = best ? energy_of(*best) - energy_of(s_) : 0;
+    const bool same = best && std::fabs(further) < alike * std::fabs(at.energy - energy_of(s_));
+    if (!best || (same && to_come != 0 ? to_come < 0 : further > 0)) best = s_;
   }
   s_ = best ? *best : before;
   return best.has_value();
@@ -365,7 +415,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         if (!motion) return end_by(Statics::End::at_rest);
         const bool came_back = !is_slice() && pace->saddles > 0 && !(at.energy < pace->saddle_energy - enough);
         if (came_back) --out_.relaxed.saddles;
-        if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(*motion)) {
+        if (came_back || pace->saddles == most_saddles || done() >= max_steps || !push_along(at, *motion)) {
           out_.falls = true;
           return end_by(Statics::End::at_rest);
         }
@@ -387,7 +437,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         const bool fine = move(scale * d);
         VectorXd left = forces_of(s_);
         AllowedMotions(s_).project_force(left);
-        out.end = scale * left.dot(d);
+        out.end = left.dot(onward_);
         out.first = scale * gain;
         // The energy of a slice is known by the work of its forces alone: energies count the images too.
         const double change = is_slice() ? -0.5 * (out.first + out.end) : energy_of(s_) - at.energy,
@@ -398,7 +448,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         return out;
       };
       const double far = farthest(d);
-      Attempt step = attempt(far > options_.farthest ? options_.farthest / far : 1.0);
+      const Attempt step = attempt(far > options_.farthest ? options_.farthest / far : 1.0);
       if (!step.taken) {
         ++out_.refused;
         s_ = before;
@@ -406,23 +456,13 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         pace->rate = std::max(2 * pace->rate, 0.02);
         continue;
       }
-      // One direction is good for more where forces agree with the model, as those of tubes that slide do.
-      while (step.scale < 1 && step.disagreement() < 0.05 && step.scale * far < most_widened * options_.farthest) {
-        Simulation there = s_;
-        s_ = before;
-        const Attempt wider = attempt(std::min(1.0, 2 * step.scale));
-        if (!wider.taken || wider.disagreement() > 0.1) {
-          s_ = std::move(there);
-          break;
-        }
-        step = wider;
-      }
       moved_on = true;
       ++out_.newton_steps;
       pace = &s_.relaxation_with(goal);
       // What is left of forces at rest is rounding, which no model foresees.
       if ((step.disagreement() < 0.3 && step.scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
-        pace->rate = std::max(options_.least_rate, pace->rate / 3);
+        pace->rate = std::max(options_.least_rate,
+                              pace->rate / (step.disagreement() < 0.02 && step.scale == 1 ? 10 : 3));
       else if (step.end - step.by_model < -0.7 * std::fabs(step.first))
         pace->rate *= 2;
       if (pace->falling > 0 && pace->rate < 1.3 * pace->falling) {

@@ -4,9 +4,9 @@
 //
 // with the tangent of stiffness.hpp. A large s is damped dynamics with short steps, s = 0 Newton's method. Where
 // K + s M is not positive, s rises: a state that is no minimum is left along the motions that grow. No element goes
-// farther than some tenths of its radius in a step, or as far as the forces agree with the model there; a step must
-// lower the energy less the work of the loads, and s follows from how well the forces afterwards agree. C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal.
-// 35, 508 (1998), DOI 10.1137/S0036142996304796.
+// farther than some tenths of its radius in a step, turns of whole sections of a rope apart; a step must lower the
+// energy less the work of the loads, and s follows from how well the forces afterwards agree. C. T. Kelley,
+// D. E. Keyes, SIAM J. Numer. Anal. 35, 508 (1998), DOI 10.1137/S0036142996304796.
 //
 // A state that rests is pushed once more: by conjugate gradients for random forces, which have a part in every
 // motion. A motion of negative curvature that they meet is followed.
@@ -17,6 +17,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -37,6 +38,9 @@ struct NewtonOptions {
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count
+  // ps: a saddle from which the energy falls alike to both sides is left to the one to which the loads of this time
+  // would push; NaN: none are known.
+  double loads_to_come = std::numeric_limits<double>::quiet_NaN();
 };
 
 // A wall that has collapsed bears no more, however long it is turned.
@@ -89,10 +93,13 @@ class NewtonStatics {
   bool follow_once(const At& at, double until);
   Eigen::VectorXd led(double passes) const;
   bool move(const Eigen::VectorXd& d, double passes = 0);
-  Eigen::VectorXd on_arcs(const Eigen::VectorXd& d) const;
+  struct SectionMove;
+  std::vector<SectionMove> section_moves(const Eigen::VectorXd& d) const;
+  Eigen::VectorXd on_arcs(const Eigen::VectorXd& d, Eigen::VectorXd& onward) const;
   double farthest(const Eigen::VectorXd& d) const;
   std::optional<Eigen::VectorXd> falling_motion(const At& at);
-  bool push_along(const Eigen::VectorXd& motion);
+  bool push_along(const At& at, const Eigen::VectorXd& motion);
+  double work_to_come(const At& at, const Eigen::VectorXd& d) const;
 
   Simulation& s_;
   NewtonOptions options_;
@@ -100,6 +107,7 @@ class NewtonStatics {
   Sections sections_;
   Statics out_;
   bool at_newton_ = true, roughly_ = false;
+  Eigen::VectorXd onward_;  // the direction of the last move, at its end
 };
 
 }  // namespace ropewalk

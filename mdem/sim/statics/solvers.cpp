@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 Block symmetric_part(const Block& b) { return 0.5 * (b + b.transpose()); }
 
-// Of a pivot; where it is not positive, of the positive one with the same eigenvalues but for the sign.
+// The inverse of a pivot. One that is not positive is taken with the signs of its negative eigenvalues turned.
 Block inverse_of(const Block& d) {
   constexpr double least = 1e-3;
   const Eigen::LLT<Block> factor(d);

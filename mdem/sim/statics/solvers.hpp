@@ -32,7 +32,7 @@ Sections sections_of(const Topology& topology, const State& state);
 // An approximate inverse, symmetric and positive.
 class Preconditioner {
  public:
-  // Of K + shift M, with the identity in the rows of held unknowns.
+  // A preconditioner of K + shift M, with the identity in the rows of held unknowns.
   Preconditioner(const Topology& topology, const State& state, const Sections& sections, const BlockMatrix& k,
                  const Eigen::VectorXd& mass, double shift, const std::vector<char>& held);
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;

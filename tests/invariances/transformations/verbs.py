@@ -37,7 +37,7 @@ def limits_that_check_foresees(case):
     skip_if(any("tubes" in g for g in scene.list("grip")), "it pulls single tubes, as far as others hold them")
     scene = scene.with_keys(limits={"twist_deg": 0.6, "strain": 0.002, "wall_twist": 0.005})
     notes = [line for line in case.check(scene).splitlines() if "may bring" in line or "begins with" in line]
-    found = {entry["key"]: entry
+    found = {entry["key"]: {**entry, "largest": abs(entry["largest"]), "limit": abs(entry["limit"])}
              for entry in json.loads((case.run(scene) / "limits.json").read_text())["limits"]}
     for line in notes:
         words = line.split()

@@ -125,6 +125,29 @@ TEST(NumericErrors, OfAMeanAreBlocksAndScatter) {
   EXPECT_EQ(few.statistics, 0) << "the other start is the same run";
 }
 
+// What came of a run: no rows are compared, a time is twice as long at half the rate, and what one run lacks is not
+// known.
+TEST(NumericErrors, OfAResultCompareRunsAsTheyAre) {
+  Repeated runs;
+  for (const char* name : {"half-rate", "start-1"}) runs.add(name, log_of(3, 1, [](double t) { return t; }));
+  NumericRuns what;
+  what.sources = {{"rate", "half-rate", 2, 2, "", ""}};
+  what.starts = {"start-1"};
+  const NumericErrors errors = runs.of(what, log_of(3, 1, [](double t) { return t; }));
+  const auto results = [](double own, double slower, double other) {
+    return [=](const std::string& folder) { return folder.empty() ? own : folder == "start-1" ? other : slower; };
+  };
+  const WholeError torque = errors.of_runs(results(100, 130, 102), false);
+  EXPECT_EQ(torque.value, 100);
+  EXPECT_NEAR(torque.numerics, 60, 1e-12);
+  EXPECT_NEAR(torque.statistics, std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(torque.decides, "rate");
+  EXPECT_NEAR(errors.of_runs(results(10, 22, 10), true).numerics, 2 * 1, 1e-12) << "11 ps of its own time";
+  const WholeError lacking = errors.of_runs(results(10, std::nan(""), 10), false);
+  EXPECT_EQ(lacking.without, 1);
+  EXPECT_TRUE(std::isnan(lacking.total()));
+}
+
 TEST(NumericErrors, AreReadAsTheyWereWritten) {
   Repeated runs;
   runs.add("half-rate", log_of(9, 2, [](double t) { return 3 + t; }));
@@ -132,9 +155,9 @@ TEST(NumericErrors, AreReadAsTheyWereWritten) {
   what.sources = {{"rate", "half-rate", 2, 2, "slower", "slower still"}};
   what.remarks = {"elements: why"};
   const std::vector<LogRow> log = log_of(9, 1, [](double t) { return t; });
-  const std::string text = numeric_errors_json(runs.of(what, log), log);
+  const std::string text = numeric_errors_json(runs.of(what, log), log, {});
   write_file_atomically(runs.path() + "/errors/numerics.json", text);
-  EXPECT_EQ(numeric_errors_json(read_numeric_errors(runs.path(), log), log), text);
+  EXPECT_EQ(numeric_errors_json(read_numeric_errors(runs.path(), log), log, {}), text);
   const std::vector<LogRow> rows = rows_of_errors(runs.path(), log);
   EXPECT_NEAR(rows.at(4)["torque_upper_nN_nm"], 2 * (3 + 8 - 4), 1e-12);
   EXPECT_EQ(rows.at(4)["time_ps"], 4);

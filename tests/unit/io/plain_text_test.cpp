@@ -123,6 +123,18 @@ TEST(Failure, IsALineWithARemedy) {
   EXPECT_EQ(error_words(InputError({"a\nb", 1, "k"}, "x", "y")), "a\\nb:1: k: x; y");
 }
 
+TEST(PlainText, LongLinesGoOnBelowTheirOwnColumn) {
+  const std::string words(59, 'a'), line = "  --option TEXT    " + words + " " + words;
+  EXPECT_EQ(within_width(line), "  --option TEXT    " + words + "\n" + std::string(19, ' ') + words);
+  EXPECT_EQ(within_width("short\n"), "short\n");
+  EXPECT_EQ(within_width(std::string(130, 'x')), std::string(130, 'x')) << "nowhere to break";
+  std::string accents;
+  for (int k = 0; k < 60; ++k) accents += "é";
+  EXPECT_EQ(within_width(accents + " " + std::string(59, 'x')), accents + " " + std::string(59, 'x'));
+  EXPECT_EQ(markdown_within_width("- " + words + "\n  " + words + "\n  b\n\n```\nx\ny\n```\nc\nd\n"),
+            "- " + words + "\n  " + words + " b\n\n```\nx\ny\n```\nc d\n");
+}
+
 TEST(Memory, IsThatOfTheLimit) {
   EXPECT_EQ(beyond_memory(1000), "");
   EXPECT_NE(beyond_memory(1e12), "");

@@ -56,10 +56,14 @@ TEST(RunResults, BeyondALimitAreSaidToBe) {
   const RunResults r = run_results(twisted(1), limits, {{4.2, 2, 11}});
   EXPECT_EQ(r.first_limit, "wall_twist");
   EXPECT_EQ(r.torque_within, 200);
+  EXPECT_NEAR(r.first_limit_deg, 26, 1e-12);
+  EXPECT_TRUE(std::isnan(run_results(twisted(1), {passed("strain", 0, 100)}, {}).first_limit_deg))
+      << "a relaxation counts steps";
+  EXPECT_TRUE(std::isnan(run_results(twisted(1), {}, {}).first_limit_deg));
   EXPECT_NEAR(r.stored_at_limit, 0.2, 1e-12) << "of the last row before";
   EXPECT_THAT(
       result_sentences(r),
-      ElementsAre("Torque passed its maximum, 400 nN nm, at 40°, beyond wall_twist from 2.6 ps on; before, it "
+      ElementsAre("Torque passed its maximum, 400 nN nm, at 40°, beyond wall_twist from 2.6 ps on (26°); before, it "
                   "reached 200 nN nm.",
                   "One tube broke at 42°: tube 2, element 11, beyond wall_twist.",
                   "When wall_twist was passed, the rope stored 0.2 MJ/kg."));
@@ -69,6 +73,15 @@ TEST(RunResults, BeyondALimitAreSaidToBe) {
   EXPECT_EQ(rows_within(twisted(1), {passed("strain", 0, 0)}), 0u);
   EXPECT_EQ(rows_within(twisted(1), {}), 7u);
   EXPECT_TRUE(std::isnan(run_results(twisted(1), {passed("strain", 0, 0)}, {}).stored_at_limit));
+}
+
+TEST(RunResults, KnownErrorsStandInTheSentences) {
+  const RunResults r = run_results(twisted(1), {}, {});
+  std::vector<double> errors;
+  for (const OutputColumn& c : result_columns())
+    errors.push_back(std::string(c.name) == "torque_max_nN_nm" ? 12.3 : NAN);
+  EXPECT_THAT(result_sentences(r, errors),
+              ::testing::Contains("Torque passed its maximum, 400 ± 12 nN nm, at 40°."));
 }
 
 TEST(RunResults, TorqueIsThatOfTheHeldEnds) {
@@ -87,6 +100,18 @@ TEST(RunResults, StrengthIsThatOfARopeThatIsPulled) {
   EXPECT_EQ(r.strength, 4);
   EXPECT_THAT(result_sentences(r),
               ::testing::Contains("Stress passed its maximum, 4 GPa (0 N/tex), at a strain of 0.04."));
+}
+
+// Strain counts from the beginning of the pull; a rope that was not at rest then has no strength.
+TEST(RunResults, StrainIsThatOfThePull) {
+  std::vector<LogRow> log(6);
+  const double strain[] = {0, -0.004, -0.0045, -0.003, -0.0015, 0.001}, stress[] = {0, 0.05, 0, 0.7, 1.4, 0.2};
+  for (std::size_t k = 0; k < log.size(); ++k) log[k]["ends_strain"] = strain[k], log[k]["stress_GPa"] = stress[k];
+  EXPECT_NEAR(run_results(log, {}, {}).strength_strain, 0.003, 1e-12);
+  log[3]["stress_GPa"] = -0.9;
+  const RunResults r = run_results(log, {}, {});
+  EXPECT_TRUE(std::isnan(r.strength));
+  EXPECT_THAT(result_sentences(r), ::testing::Contains(HasSubstr("Stress came to 1.4 GPa, which is no strength: its")));
 }
 
 // A rope that is bent grows shorter, and its clamps bear its cohesion: that is no strength, and noise is no torque.

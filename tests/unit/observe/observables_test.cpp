@@ -39,7 +39,7 @@ TEST(Observables, LogHasTheColumnsAndBytesThatItAlwaysHad) {
       "writhe,turned_back,kinked,overtwisted,overstretched,largest_bond_twist_deg,stress_GPa,specific_stress_N_per_"
       "tex,"
       "tether_eV,tether_lost_eV,tethers_broken,friction_eV,friction_slip_eV,friction_drag_eV,friction_slips,"
-      "links_eV,links_lost_eV,links_formed,links_broken,failure_lost_eV,bonds_broken,ends_eV\n");
+      "links_eV,links_lost_eV,links_formed,links_broken,failure_lost_eV,bonds_broken,ends_eV,own_forces_eV\n");
   const Topology topology;
   State state;
   state.step = 123456789012345;

@@ -62,6 +62,23 @@ TEST(QuasiStatic, TheFastestRampCountsAndATubeInLineCountsByItsLength) {
   EXPECT_NEAR(finite.travel / one.travel, period_of(tubes_of_30) / period_of(""), 0.02);
 }
 
+TEST(QuasiStatic, IsThatOfTheRopeWhereverItStands) {
+  Scene scene = scene_of(
+      "[rope]\ntubes = 7\nlength_nm = 20\n[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\n"
+      "about_z = { rotation_deg = [[0, 0], [20, 20]] }\n[run]\nduration_ps = 1\n");
+  Prepared p = prepare(scene);
+  const QuasiStatic here = quasi_static(scene, p).value();
+  for (std::size_t i = 0; i < p.state.size(); ++i)
+    p.state.position.set(i, Vector3(p.state.position[i]) + Vector3(8, -5, 0));
+  const QuasiStatic there = quasi_static(scene, p).value();
+  EXPECT_NEAR(there.travel, here.travel, 1e-9 * here.travel);
+  EXPECT_NEAR(there.error, here.error, 1e-9 * here.error);
+  QuasiStatic fast = here;
+  fast.time = 0.5 * fast.travel;
+  EXPECT_THAT(words_of(fast), HasSubstr("one part turns before another feels it"));
+  EXPECT_EQ(words_of(fast).find("%"), std::string::npos);
+}
+
 TEST(QuasiStatic, WhatIsTwistedFromTheStartDoesNotTurn) {
   Scene scene = scene_of(slice(130, "", "[[0, 1]]"));
   EXPECT_FALSE(quasi_static(scene, prepare(scene)));

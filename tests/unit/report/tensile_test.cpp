@@ -63,6 +63,42 @@ TEST(Tensile, BeginsWhereTheLastPullBegins) {
   EXPECT_TRUE(std::isnan(t.breaks_at)) << "nothing broke";
 }
 
+// A slice that crept longer by itself, and whose stress rang when its strain was led, has no strength.
+TEST(Tensile, ARopeThatWasNotAtRestHasNoStrength) {
+  const std::vector<Point> rings = {{0, 0},       {0.03, 0.02},   {0.08, -0.02}, {0.14, 0.02},
+                                    {0.144, 0.4}, {0.145, -0.52}, {0.148, 0.78}, {0.152, 0.1}},
+                           falls = {{0, 0}, {0.01, -0.6}, {0.02, 0.7}, {0.021, 1}, {0.03, 0.1}},
+                           creeps = {{0, 0}, {0.1, 0.01}, {0.2, 0}, {0.203, 0.5}, {0.206, 1}, {0.21, 0.2}};
+  std::vector<std::string> reasons;
+  for (const auto& points : {rings, falls, creeps}) {
+    const TensileTest t = tensile_test(log_of(points), {});
+    EXPECT_FALSE(t.no_strength.empty());
+    for (const double value : {t.strength, t.specific, t.strain, t.modulus, t.toughness, t.specific_toughness})
+      EXPECT_TRUE(std::isnan(value)) << value;
+    EXPECT_FALSE(t.to_half);
+    reasons.push_back(t.no_strength);
+  }
+  EXPECT_THAT(reasons[1], HasSubstr("its stress fell to -0.6 GPa after the pull began"));
+  EXPECT_THAT(reasons[2], HasSubstr("it grew longer by 0.203 of its length before it bore a tenth of that"));
+  LoadTestKind kind = tensile_kind();
+  kind.left_out = "2 of 5 runs failed";
+  TensileTest wound = tensile_test(log_of(pull), {});
+  wound.before["beta_deg"] = 5;
+  const std::vector<LoadTestGroup> groups = {{"a", "", {load_test(tensile_test(log_of(pull), {}))}},
+                                             {"b", "", {load_test(wound)}},
+                                             {"c", "", {load_test(tensile_test(log_of(creeps), {}))}}};
+  const std::string csv = load_tests_csv(kind, groups, "beta_deg");
+  EXPECT_THAT(csv, HasSubstr(",why_none\n"));
+  EXPECT_THAT(csv, HasSubstr("\"c\",1,0,10,nan,nan,"));
+  EXPECT_THAT(csv, HasSubstr("\"" + reasons[2] + "\"\n"));
+  EXPECT_THAT(load_tests_svg(kind, groups, "beta_deg"),
+              HasSubstr("1 of 3 points without strength are left out; 2 of 5 runs failed"));
+  Figures figures;
+  const std::string part = load_tests_part(kind, groups, "beta_deg", "", figures);
+  EXPECT_THAT(part, HasSubstr("Of c there is no strength: " + reasons[2]));
+  EXPECT_THAT(part, HasSubstr("Left out: 2 of 5 runs failed."));
+}
+
 // Twisted between clamps that hold its length, a rope is under tension before it is pulled.
 TEST(Tensile, BeginsWhereAHeldRopeIsDrawnOut) {
   std::vector<Point> points = {{0, 0}, {0, 0.5}, {0, 1}, {0, 1}};
@@ -110,9 +146,9 @@ TEST(Tensile, TableAndFigureHaveMeansAndErrors) {
   passed.key = "strain", passed.passed = true, passed.passed_at_ps = 7.5;
   groups[0].tests[1].limits = {passed};
   const std::string csv = load_tests_csv(kind, groups, "beta_deg");
-  EXPECT_THAT(csv, HasSubstr(",first_limit,first_limit_ps\n"));
-  EXPECT_THAT(csv, HasSubstr(",strain,7.5\n"));
-  EXPECT_THAT(csv, HasSubstr(",,nan\n"));
+  EXPECT_THAT(csv, HasSubstr(",first_limit,first_limit_ps,why_none\n"));
+  EXPECT_THAT(csv, HasSubstr(",strain,7.5,\n"));
+  EXPECT_THAT(csv, HasSubstr(",,nan,\n"));
   EXPECT_THAT(csv, HasSubstr("run,replicates,to_half,beta_deg,strength_GPa,strength_GPa_standard_error,"));
   EXPECT_THAT(csv, HasSubstr("\"l = 20\",2,2,10,3.3,0.3,1.65,0.15,0.01,0,330,30,"));
   EXPECT_THAT(csv, HasSubstr("\"l = 20, wound\",1,1,25,3,nan,"));

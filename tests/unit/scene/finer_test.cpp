@@ -245,6 +245,12 @@ TEST(FinerScene, SaysWhyNot) {
   const CoarseAndFine p("[chain]\nelements = 9\n" + short_run);
   EXPECT_EQ(why_not_finer(p.coarse, p.before.topology), "");
   EXPECT_THAT(why_not_finer(p.fine, p.after.topology), HasSubstr("shorter than the radius"));
+  const CoarseAndFine breaks("[chain]\nelements = 9\n[failure]\nstrain = 0.05\n" + short_run);
+  EXPECT_EQ(why_not_finer(breaks.coarse, breaks.before.topology), "") << "a tube is as strong in shorter elements";
+  Scene scatters = scene_of_text("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[chain]\n"
+                                 "elements = 9\n[failure]\nstrain = 0.05\nstrain_deviation = 0.01\n" + short_run,
+                                 place);
+  EXPECT_THAT(why_not_finer(scatters, prepare(scatters).topology), HasSubstr("draws a strain for every bond"));
   Scene paper = scene_of_text(
       "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 9\n" + short_run,
       place);

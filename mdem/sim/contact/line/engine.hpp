@@ -81,7 +81,7 @@ struct LineKernelInput {
   const NodePositions<C>* nodes;
   const PairTables<Table>* pairs;  // tables of tube types i, j at i * types + j
   double unit, per_unit;           // nm, and its inverse
-  double moved;                    // nm: by no more have distances shrunk since the list was built
+  double moved;                    // upper bound (nm) on how much any distance has shrunk since the list was built
   bool energies;                   // whether they are wanted
 };
 

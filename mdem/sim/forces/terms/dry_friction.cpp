@@ -85,6 +85,7 @@ class DryFrictionTerm : public ForceTerm {
         damping_(law.drag * scene.longest_element() * most_rows(scene)) {}
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<DryFrictionTerm>(*this); }
   std::string name() const override { return "friction"; }
+  std::string not_foreseen() const override { return "what tubes pull on one another by friction"; }
 
   void prepare(const ListedScene& scene) override {
     know(scene.topology, scene.state);

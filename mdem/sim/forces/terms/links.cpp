@@ -225,6 +225,7 @@ class LinkTerm : public ForceTerm {
   }
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<LinkTerm>(*this); }
   std::string name() const override { return "links"; }
+  std::string not_foreseen() const override { return "what links pull"; }
 
   void prepare(const ListedScene& scene) override {
     if (scene.topology.part) {
@@ -423,7 +424,9 @@ class LinkTerm : public ForceTerm {
  private:
   // nm: how far the elements of a link can be apart before it breaks, or may be where none breaks.
   double longest_link() const {
-    constexpr double unbreakable = 1;  // nm: the largest stretch that is foreseen
+    // Nothing bounds the stretch of a link that cannot break, and what processes copy of each other must have a bound:
+    // three times the distance between walls that touch, 0.34 nm. check_stretch() ends a run that goes beyond.
+    constexpr double unbreakable = 1;  // nm
     const double arm = std::hypot(scene_.largest_radius() + 0.5 * std::max(law_.reach, law_.rest),
                                   0.5 * scene_.longest_element()),
                  softest = std::min(law_.stretch, law_.shear);
@@ -446,7 +449,7 @@ class LinkTerm : public ForceTerm {
         throw std::runtime_error("the link between elements " + std::to_string(link.at.a) + " and " +
                                  std::to_string(link.at.b) + " is stretched over more than " +
                                  std::to_string(std::min(apart, longest_link())) +
-                                 " nm, farther than processes see");
+                                 " nm, farther than processes see: give breaks_at_nN, or run them on one process");
     }
   }
   // The process that owns the first element of the scene says what belongs to no link.
@@ -564,7 +567,8 @@ class LinkTerm : public ForceTerm {
     std::stable_sort(links_.begin(), links_.end(), [](const Link& x, const Link& y) { return x.at.a < y.at.a; });
   }
 
-  // Of a slice: a link to an image above acts on the original through its own image, one period lower.
+  // Whether a slice has this link twice: a link to an image above acts on the original through its own image, one
+  // period lower.
   bool has_image(const LinkPlace& link) const { return here_.is_image(link.a) || here_.is_image(link.b); }
 
   void index() {

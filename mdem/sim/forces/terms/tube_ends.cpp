@@ -39,7 +39,7 @@ class TubeEnds : public ForceTerm {
   std::unique_ptr<ForceTerm> copy() const override { return std::make_unique<TubeEnds>(*this); }
   std::string name() const override { return "ends"; }
 
-  // Of several processes each has the joints whose two elements are here; copies reach as far as a contact.
+  // Each of several processes has the joints whose two elements are here; copies reach as far as a contact.
   void prepare(const ListedScene& scene) override {
     if (!scene.topology.part) return;
     const std::vector<int>& number = scene.topology.part->number;

@@ -20,7 +20,7 @@ constexpr double energy_tolerance = 0.03, torque_tolerance = 0.05, spacing_toler
 constexpr double tube_length = 12;  // nm
 constexpr int registry_count = 48;
 constexpr double angles[] = {30, 45, 60, 75, 90};                                        // degrees
-constexpr double offsets[] = {-0.04, -0.02, 0, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6};  // nm from the rest at 90
+constexpr double offsets[] = {-0.04, -0.02, 0, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6};  // nm beyond rest at 90 degrees
 constexpr double fit_reach = 0.04;
 constexpr double angle_step = 2;  // degrees: torque by differences
 constexpr int sides = 3;

@@ -117,7 +117,7 @@ struct Relaxed {
   double energy = 0, crossings = 0;         // eV, at the start: of the model, of all crossings by the integral
 };
 
-// Of the tubes of a film that pass across one another, as long ones would have it.
+// Energy of all crossings of tubes of a film, each as that of two endless tubes.
 double crossing_energy(const PairIntegral& integral, const Film& film, double cutoff) {
   const double half = 0.5 * film.length();
   double sum = 0;
