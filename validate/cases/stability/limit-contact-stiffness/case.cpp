@@ -38,7 +38,7 @@ const std::vector<Series>& all_series() {
 Bundle packed(const Series& s, ParameterSet set, double factor) {
   set = with_elements(set, s.length);
   scale_contact(set, factor);
-  if (!s.law<PaperContact>()) return line_bundle(set, tubes, elements);
+  if (!s.paper) return line_bundle(set, tubes, elements);
   Bundle b;
   b.topology = topology_of(set);
   b.interaction.law = paper_law(*set.law<PaperContact>());

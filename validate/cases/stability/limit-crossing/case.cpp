@@ -286,7 +286,7 @@ CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const Parame
     paper_rows.put({paper_at, 0, 0}, degrees * units::degree);
     by_paper.push_back(paper_rows.energy());
   }
-  const double crossed = line_crossed_energy(line.line->density, line_at, 0.5 * units::pi);
+  const double crossed = line_crossed_energy(line.law<LineParameters>()->density, line_at, 0.5 * units::pi);
   return case_figure("Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"},
                      "Two tubes of nine elements that cross in the middle, at the distance of two parallel ones.",
                      {theory_curve("endless tubes, E90/sin", 12, 90,
