@@ -13,8 +13,10 @@
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "io/grade.hpp"
+#include "io/laws/line.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "verbs/tables.hpp"
 #include "version.hpp"
 
@@ -370,7 +372,7 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
     line.universal = *c.universal;
     line.has_universal = true;
   }
-  set.line = line;
+  set.laws[LineParameters::law] = line;
   set.provenance = {
       {"command", c.request.command},
       {"program", fmt::format("ropewalk {} ({})", version, git_id)},

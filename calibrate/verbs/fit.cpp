@@ -22,6 +22,8 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "verbs/tables.hpp"
 #include "verbs/verbs.hpp"
 
@@ -145,7 +147,7 @@ void add_contact_residuals(FitModel& m, std::vector<ContactRow> rows, Law law, E
 }
 
 FitModel line_model(const std::string& path, const ParameterSet& base) {
-  if (!base.line)
+  if (!base.law<LineParameters>())
     throw InputError({base.path, 0, "contact.line"}, "is missing",
                      "take a base that has the line law: it gives the gaps");
   FitModel m;
@@ -161,12 +163,12 @@ FitModel line_model(const std::string& path, const ParameterSet& base) {
     return r.kind == "parallel" ? line_parallel_energy(d, r.distance) : line_crossed_energy(d, r.distance, r.angle);
   };
   m.largest = unusable_contact;
-  add_contact_residuals(m, read_contact_csv(path), base.line->density, energy);
+  add_contact_residuals(m, read_contact_csv(path), base.law<LineParameters>()->density, energy);
   return m;
 }
 
 FitModel paper_model(const std::string& path, const ParameterSet& base) {
-  if (!base.paper)
+  if (!base.law<PaperContact>())
     throw InputError({base.path, 0, "contact.paper"}, "is missing", "take a base that has the published law");
   FitModel m;
   for (const char* name : paper_parameters)
@@ -184,7 +186,7 @@ FitModel paper_model(const std::string& path, const ParameterSet& base) {
                                 : paper_crossed_energy(k, length, r.distance, r.angle);
   };
   m.largest = 0.5;  // one point of an element has no better law where tubes touch hard
-  add_contact_residuals(m, std::move(rows), *base.paper, energy);
+  add_contact_residuals(m, std::move(rows), *base.law<PaperContact>(), energy);
   return m;
 }
 
@@ -262,7 +264,7 @@ void check_free(const TomlTable& top, const Settings& s, const FitModel& m) {
 
 // Quantities that follow from the line law, computed again after the law has changed.
 void renew_wells(const Settings& s, const FitResult& fit, ParameterSet& set) {
-  LineDensity d = s.base->line->density;
+  LineDensity d = s.base->law<LineParameters>()->density;
   set_form(fit.value, d);
   const LineWell parallel = line_parallel_well(d), crossed = line_crossed_well(d, 0.5 * units::pi);
   const std::pair<const char*, double> values[] = {{"contact.line.pair_spacing", parallel.distance},

@@ -17,6 +17,7 @@
 #include "io/friction_toml.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "verbs/verbs.hpp"
 #include "version.hpp"
 
@@ -44,11 +45,11 @@ Tube tube_of(const std::string& name) {
   Tube tube;
   tube.set = read_parameters(find_parameters(name, "", {"", 0, "set"}));
   refuse_filament(tube.set, "no friction follows from it", "give strength_pN_per_nm in [[friction]]");
-  if (!tube.set.line)
+  if (!tube.set.law<LineParameters>())
     throw InputError({tube.set.path, 0, "contact.line"},
                      "is missing: the set does not say how atoms of two tubes attract",
                      "take a set that ropewalk calibrate made");
-  if (!(tube.set.line->universal.lj_cutoff > 0))
+  if (!(tube.set.law<LineParameters>()->universal.lj_cutoff > 0))
     throw InputError({tube.set.path, 0, "contact.line.lj_cutoff"}, "is 0, and friction needs a cutoff",
                      "take a set with one");
   tube.shape = reference_of(tube.set).shape;
@@ -56,7 +57,8 @@ Tube tube_of(const std::string& name) {
 }
 
 AtomLaw atom_law(const Tube& a, const Tube& b) {
-  const UniversalLine &of_a = a.set.line->universal, &of_b = b.set.line->universal;
+  const UniversalLine &of_a = a.set.law<LineParameters>()->universal,
+                      &of_b = b.set.law<LineParameters>()->universal;
   if (of_a.epsilon != of_b.epsilon || of_a.sigma != of_b.sigma || of_a.lj_cutoff != of_b.lj_cutoff)
     throw InputError({b.set.path, 0, "contact.line"}, "has another Lennard-Jones law than " + a.set.path,
                      "take two sets with the same one");

@@ -10,6 +10,7 @@
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "report/page.hpp"
 #include "verbs/tables.hpp"
 #include "verbs/verbs.hpp"
@@ -169,7 +170,7 @@ std::string elastic_part(const ParameterSet& set, Figures& figures) {
 
 std::string contact_part(const ParameterSet& set, Figures& figures) {
   const std::string path = companion(set, "contact");
-  if (path.empty() || !set.line)
+  if (path.empty() || !set.law<LineParameters>())
     return paragraph("The set names no table of the contact, or it does not lie beside the set.");
   struct Curve {
     const char *kind, *title, *quantity, *unit, *words;
@@ -189,7 +190,7 @@ std::string contact_part(const ParameterSet& set, Figures& figures) {
     for (const ContactRow& r : rows)
       if (r.kind == c.kind && r.energy < -lowest) p.add(r.distance, r.energy, r.fit);
     p.sort();
-    const LineDensity& law = set.line->density;
+    const LineDensity& law = set.law<LineParameters>()->density;
     p.draw([&](double at) {
       return c.kind == std::string("density")    ? law.energy(at)
              : c.kind == std::string("parallel") ? line_parallel_energy(law, at)

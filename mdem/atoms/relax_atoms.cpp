@@ -8,6 +8,7 @@
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/plain_text.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk {
 namespace {
@@ -97,8 +98,8 @@ AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string&
                          "choose one: --potential " + name);
       name = own;
     }
-    if (!set.line) continue;
-    const UniversalLine& law = set.line->universal;
+    if (!set.law<LineParameters>()) continue;
+    const UniversalLine& law = set.law<LineParameters>()->universal;
     if (out.epsilon != 0 && (law.epsilon != out.epsilon || law.sigma != out.sigma))
       throw InputError({set.path, 0, "contact.line"}, "has another Lennard-Jones law than the first set",
                        "take sets with the same one");

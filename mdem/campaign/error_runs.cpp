@@ -11,6 +11,7 @@
 #include "io/files.hpp"
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "plan/scene_edit.hpp"
 #include "scene/scene_place.hpp"
@@ -129,7 +130,7 @@ class InputsOf {
     const Quantity* fit = find_quantity(scene_.sets.front(), "contact.line.universal.error");
     if (!fit || !(fit->value > 0)) return;
     for (std::size_t k = 0; k < scene_.sets.size(); ++k)
-      if (!scene_.sets[k].line || !scene_.sets[k].line->has_universal) return;
+      if (!scene_.sets[k].law<LineParameters>() || !scene_.sets[k].law<LineParameters>()->has_universal) return;
     add("contact of unlike tubes", "contact-unlike", fit->value, step_of(fit->value), "", Of::set, all_sets, {},
         "contact.line.universal.log_K.values.0");
   }

@@ -8,6 +8,7 @@
 
 #include "io/parameters_toml.hpp"
 #include "io/plain_text.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk {
 namespace {
@@ -83,11 +84,11 @@ void agree(double one, double other, const char* what, const char* and_is, Grade
 }
 
 void grade_contact(const ParameterSet& set, Grade& grade) {
-  if (!set.line) {
+  if (!set.law<LineParameters>()) {
     add(grade, Level::limited, "its contact was not compared with the surface integral between two tubes");
     return;
   }
-  const LineParameters& line = *set.line;
+  const LineParameters& line = *set.law<LineParameters>();
   agree(line_parallel_well(line.density).energy, line.pair_energy, "K, s, c, p and q give two parallel tubes",
         "eV/nm, and pair_energy is", grade);
   agree(line_crossed_well(line.density, 0.5 * units::pi).energy, line.cross90_energy,
@@ -105,7 +106,7 @@ void grade_contact(const ParameterSet& set, Grade& grade) {
   else if (mixed > known_well)
     add(grade, Level::limited,
         fmt::format("the contact with other tubes is off by up to {:.2g} % of the well", 100 * mixed));
-  else if (!set.line->has_universal)
+  else if (!set.law<LineParameters>()->has_universal)
     add(grade, Level::limited, "not to be mixed with other tubes: it has no universal contact law");
 }
 
@@ -194,8 +195,8 @@ void grade_anharmonic(const ParameterSet& set, Grade& grade) {
 }
 
 void grade_line(const ParameterSet& set, Grade& grade) {
-  if (!set.line) return;
-  const LineParameters& line = *set.line;
+  if (!set.law<LineParameters>()) return;
+  const LineParameters& line = *set.law<LineParameters>();
   const LineDensity& d = line.density;
   const double cutoff = line.universal.lj_cutoff;
   within({{"epsilon (eV)", line.universal.epsilon, 0.001, 0.01},

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "io/files.hpp"
+#include "io/law_numbers.hpp"
+#include "io/rows_toml.hpp"
 #include "io/toml_table.hpp"
 
 namespace ropewalk {
@@ -41,19 +43,6 @@ std::string read_origin(const TomlTable& q) {
   return q.word("origin", origins);
 }
 
-// A row of numbers with their errors.
-template <std::size_t size>
-void read_row(const TomlTable& section, const char* key, std::array<double, size>& out,
-              std::array<double, size>& errors) {
-  const std::string form = "{ values = [...], standard_errors = [...] }";
-  if (!section.has(key)) throw section.error(key, "is missing", fmt::format("add {} = {}", key, form));
-  const TomlTable q = section.table(key, form);
-  const std::vector<double> values = q.numbers("values", Bounds::range(-1e6, 1e6), size);
-  const std::vector<double> se = q.numbers("standard_errors", Bounds::non_negative(1e6), size);
-  std::copy(values.begin(), values.end(), out.begin());
-  std::copy(se.begin(), se.end(), errors.begin());
-}
-
 class Reader {
  public:
   Reader(const std::string& text, const std::string& path)
@@ -70,8 +59,8 @@ class Reader {
       read_tube(top_.table("tube"));
     read_bond(top_.table("bond"));
     const TomlTable contact = top_.table("contact");
-    if (contact.has("paper")) set_.paper = read_paper(contact.table("paper"));
-    if (contact.has("line")) set_.line = read_line(contact.table("line"));
+    for (const LawNumbers& law : law_numbers())
+      if (contact.has(law.name)) set_.laws[law.name] = law.read({contact.table(law.name), set_, number_of_law()});
     read_atomistic();
     read_validity(top_.table("validity"));
     const TomlTable provenance = top_.table("provenance");
@@ -89,6 +78,12 @@ class Reader {
     out.of_carbon = !set_.filament;
     order_.emplace_back(section.line(key), out);
     return out.value;
+  }
+
+  LawTable::Number number_of_law() {
+    return [this](const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
+      return quantity(section, key, unit, bounds);
+    };
   }
 
   void read_meta(const TomlTable& t) {
@@ -251,130 +246,6 @@ class Reader {
       throw t.error("s4", "and s3 leave no stiffness at the end of the window", "narrow max_shear");
     if (k.bend / r2 + 4 * h.b4 * b * b <= 0)
       throw t.error("b4", "leaves no moment at the end of the window", "narrow max_bend");
-  }
-
-  PaperContact read_paper(const TomlTable& t) {
-    PaperContact k;
-    k.radius = set_.radius;
-    k.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(100));
-    k.repulsion = quantity(t, "A", "1", Bounds::positive(1e6));
-    k.attraction = quantity(t, "B", "1", Bounds::positive(1e6));
-    k.alpha = quantity(t, "alpha", "1", Bounds::range(1, 100));
-    k.beta = quantity(t, "beta", "1", Bounds::range(1, 100));
-    for (std::size_t i = 0; i < k.angular.size(); ++i)
-      k.angular[i] = quantity(t, fmt::format("C{}", i + 1), "1", Bounds::range(-1, 1));
-    k.crossing = quantity(t, "C_gamma", "1", Bounds::non_negative(1e6));
-    k.delta = quantity(t, "delta", "1", Bounds::range(-100, 0));
-    k.freeze = quantity(t, "freeze", "r", Bounds::range(0.1, 100));
-    k.switch_start = quantity(t, "switch_start", "r", Bounds::range(2, 100));
-    k.cutoff_ratio = quantity(t, "cutoff", "r", Bounds::range(2, 100));
-    k.core_gap = quantity(t, "core_gap", "1", Bounds::range(0.01, 10));
-    check_paper(t, k);
-    return k;
-  }
-
-  static void check_paper(const TomlTable& t, const PaperContact& k) {
-    if (k.alpha <= k.beta)
-      throw t.error("alpha", fmt::format("is {}, not above beta = {}", k.alpha, k.beta),
-                    "repulsion must be the steeper of the two");
-    if (k.cutoff_ratio <= k.switch_start)
-      throw t.error("cutoff", fmt::format("is {} r, not above switch_start = {} r", k.cutoff_ratio, k.switch_start),
-                    "the switch needs room to fall to zero");
-    // The minimum of V, at D^(alpha - beta) = alpha A / (beta B), must lie between the core and the switch.
-    const double lowest = std::pow(k.alpha * k.repulsion / (k.beta * k.attraction), 1 / (k.alpha - k.beta));
-    if (lowest + 2 >= k.switch_start)
-      throw t.error("A", fmt::format("makes the contact strongest at {:.4g} r", lowest + 2),
-                    fmt::format("that must be inside of switch_start = {} r", k.switch_start));
-    if (k.core_gap >= lowest)
-      throw t.error("core_gap", fmt::format("is {}", k.core_gap),
-                    fmt::format("must be below {:.4g}, where the contact is strongest", lowest));
-    for (int degree = 0; degree <= 90; ++degree) {
-      const double theta = degree * units::degree;
-      double stretch = 1;
-      for (int i = 1; i <= 5; ++i)
-        stretch += k.angular[static_cast<std::size_t>(i - 1)] * ((i % 2 ? 1 : -1) + std::cos(2 * i * theta));
-      if (stretch < 0.05)
-        throw t.error("C1", fmt::format("makes Theta({} deg) = {:.3g}", degree, stretch),
-                      "C1 .. C5 must keep Theta positive at every angle");
-    }
-  }
-
-  void read_universal(const TomlTable& t, LineParameters& line) {
-    line.has_universal = true;
-    read_universal_rows(t, line.universal);
-    quantity(t, "error", "1", Bounds::non_negative(1e6));
-  }
-
-  LineParameters read_line(const TomlTable& t) {
-    LineParameters line;
-    LineDensity& d = line.density;
-    UniversalLine& u = line.universal;
-    if (set_.filament) {
-      refuse_atoms_of_contact(t);
-    } else {
-      u.epsilon = quantity(t, "epsilon", "eV", Bounds::positive(10));
-      u.sigma = quantity(t, "sigma", "nm", Bounds::positive(10));
-      u.lj_cutoff = quantity(t, "lj_cutoff", "nm", Bounds::non_negative(100));
-      line.surface_density = quantity(t, "surface_density", "1/nm^2", Bounds::positive(1e3));
-    }
-    d.contact = 2 * set_.radius;
-    d.K = quantity(t, "K", "eV/nm^2", Bounds::positive(1e9));
-    d.s = quantity(t, "s", "nm", Bounds::positive(100));
-    d.c = quantity(t, "c", "nm", Bounds::range(-100, 100));
-    d.p = quantity(t, "p", "1", Bounds::positive(100));
-    d.q = quantity(t, "q", "1", Bounds::positive(100));
-    u.core_gap = d.core_gap = quantity(t, "core_gap", "nm", Bounds::range(-100, 100));
-    u.switch_gap = d.switch_gap = quantity(t, "switch_gap", "nm", Bounds::positive(100));
-    u.cutoff_gap = d.cutoff_gap = quantity(t, "cutoff_gap", "nm", Bounds::positive(100));
-    line.pair_spacing = quantity(t, "pair_spacing", "nm", Bounds::positive(1e3));
-    line.pair_energy = quantity(t, "pair_energy", "eV/nm", Bounds::range(-1e6, 0));
-    line.cross90_energy = quantity(t, "cross90_energy", "eV", Bounds::range(-1e6, 0));
-    if (t.has("registry")) quantity(t, "registry", "1", Bounds::range(0, 1));
-    check_line(t, d);
-    if (set_.filament) check_wells(t, line);
-    if (t.has("universal")) read_universal(t.table("universal"), line);
-    return line;
-  }
-
-  static void refuse_atoms_of_contact(const TomlTable& t) {
-    for (const char* key : {"epsilon", "sigma", "lj_cutoff", "surface_density", "registry", "universal"})
-      if (t.has(key))
-        throw t.error(key, "is of the atoms of a carbon tube, and the set has [filament]",
-                      "take it away: K, s, c, p and q are the contact of two filaments");
-  }
-
-  // A filament's well is held to its law here, since nothing else in the set says how deep it is.
-  static void check_wells(const TomlTable& t, const LineParameters& line) {
-    const LineWell well = line_parallel_well(line.density);
-    const LineWell crossed = line_crossed_well(line.density, 0.5 * units::pi);
-    const auto agree = [&](const char* key, double said, double law, const char* unit) {
-      if (std::fabs(said - law) <= 0.01 * std::fabs(law)) return;
-      throw t.error(key, fmt::format("is {:.6g} {}", said, unit),
-                    fmt::format("K, s, c, p and q give {:.6g}: correct one or the other", law));
-    };
-    agree("pair_spacing", line.pair_spacing, well.distance, "nm");
-    agree("pair_energy", line.pair_energy, well.energy, "eV/nm");
-    agree("cross90_energy", line.cross90_energy, crossed.energy, "eV");
-  }
-
-  static void check_line(const TomlTable& t, const LineDensity& d) {
-    if (d.p <= d.q)
-      throw t.error("p", fmt::format("is {}, not above q = {}", d.p, d.q),
-                    "repulsion must be the steeper of the two");
-    if (d.core_gap + d.c <= 0)
-      throw t.error("core_gap", fmt::format("is {} nm, where the law has its pole at {:.4g} nm", d.core_gap, -d.c),
-                    "the core must begin outside of it");
-    // The minimum of u is at (s/(h + c))^(p - q) = q/p.
-    const double lowest = d.s * std::pow(d.p / d.q, 1 / (d.p - d.q)) - d.c;
-    if (lowest <= d.core_gap)
-      throw t.error("core_gap", fmt::format("is {} nm", d.core_gap),
-                    fmt::format("must be below {:.4g}, where the contact is strongest", lowest));
-    if (lowest >= d.switch_gap)
-      throw t.error("switch_gap", fmt::format("is {} nm", d.switch_gap),
-                    fmt::format("must be above {:.4g}, where the contact is strongest", lowest));
-    if (d.cutoff_gap <= d.switch_gap)
-      throw t.error("cutoff_gap", fmt::format("is {} nm, not above switch_gap = {}", d.cutoff_gap, d.switch_gap),
-                    "the switch needs room to fall to zero");
   }
 
   void read_atomistic() {
@@ -553,12 +424,6 @@ std::string quantity_text(const Quantity& q, const std::string& key) {
 
 namespace {
 
-template <class Row>
-std::string row_text(const char* key, const Row& value, const Row& error) {
-  return fmt::format("{:<16} = {{ values = [{}], standard_errors = [{}] }}\n", key, fmt::join(value, ", "),
-                     fmt::join(error, ", "));
-}
-
 std::string pull_row_text(const ParameterSet& set) {
   std::array<std::string, PULL_STEPS + 1> values, errors;
   for (std::size_t k = 0; k <= PULL_STEPS; ++k) {
@@ -569,21 +434,6 @@ std::string pull_row_text(const ParameterSet& set) {
 }
 
 }  // namespace
-
-void read_universal_rows(const TomlTable& t, UniversalLine& u) {
-  UniversalLine::Errors& e = u.standard_errors;
-  read_row(t, "log_K", u.log_K, e.log_K);
-  read_row(t, "s", u.s, e.s);
-  read_row(t, "c", u.c, e.c);
-  read_row(t, "p", u.p, e.p);
-  read_row(t, "q", u.q, e.q);
-}
-
-std::string universal_rows_text(const UniversalLine& u) {
-  const UniversalLine::Errors& e = u.standard_errors;
-  return row_text("log_K", u.log_K, e.log_K) + row_text("s", u.s, e.s) + row_text("c", u.c, e.c) +
-         row_text("p", u.p, e.p) + row_text("q", u.q, e.q);
-}
 
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
@@ -597,7 +447,8 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
     if (q.key.substr(0, dot) != section) {
       section = q.key.substr(0, dot);
       text += fmt::format("\n[{}]\n", section);
-      if (section == "contact.line.universal") text += universal_rows_text(set.line->universal);
+      for (const LawNumbers& law : law_numbers())
+        if (law.rows && set.laws.count(law.name)) text += law.rows(set.laws.at(law.name), section);
       if (section == "bond.pull") text += pull_row_text(set);
     }
     text += quantity_text(q, q.key.substr(dot + 1));

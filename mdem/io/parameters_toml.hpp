@@ -37,9 +37,6 @@ struct Bounds;
 Quantity read_quantity(const TomlTable& section, const std::string& key, const std::string& unit,
                        const Bounds& bounds);
 std::string quantity_text(const Quantity& q, const std::string& key);
-// The five rows of the universal law, as text and read from their table.
-void read_universal_rows(const TomlTable& table, UniversalLine& law);
-std::string universal_rows_text(const UniversalLine& law);
 
 // The text of a parameter file from its meta data, quantities, universal law and provenance, below `comment`.
 // Values have enough digits to be read back bit for bit, standard errors three.

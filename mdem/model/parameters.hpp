@@ -4,8 +4,8 @@
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
 //   [filament]  in place of [tube] and meta.chirality, for anything slender without a lattice of carbon:
-//               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u: atomic
-//               mass constant), element_length (nm)
+//               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u:
+//               atomic mass constant), element_length (nm)
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
 //   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
 //   and
@@ -16,17 +16,10 @@
 //               end: largest strain that the atoms bear and that their potential describes; optional: start, the
 //               max_strain, and edge_force (nN), the force of EA and [bond.anharmonic] there, both of the time when
 //               the pull was made. Where they are missing they are what the set has now.
-//   [contact.paper]   present: the set has the `paper` law; epsilon (eV), A, B, alpha, beta, C1 .. C5,
-//               C_gamma, delta, freeze, switch_start, cutoff (all in units of the radius), core_gap
-//   [contact.line]    present: the set has the `line` law; epsilon (eV), sigma (nm), lj_cutoff (nm, 0: none) and
-//               surface_density (1/nm^2) that it was integrated from; K (eV/nm^2), s (nm), c (nm), p, q, core_gap,
-//               switch_gap, cutoff_gap (nm) of contact/line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
-//               cross90_energy (eV) of that law; optional: registry, the standard deviation of pair_energy over the
-//               registries of two real tubes, over its mean. A filament has no atoms to integrate over: epsilon,
-//               sigma, lj_cutoff, surface_density, registry and [contact.line.universal] are not in its file.
-//   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
-//               { values = [6 numbers], standard_errors = [6 numbers] }, and error
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad)
+//   [contact.NAME]    present: the set has the contact law NAME, with the numbers that the law's reader names:
+//               io/laws/paper.cpp, io/laws/line.cpp
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn
+//   (rad)
 //               and sublattice_rise (nm): how far the second sublattice has moved against the first
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
@@ -41,15 +34,16 @@
 #pragma once
 
 #include <algorithm>
+#include <any>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/bond.hpp"
-#include "model/contact/line.hpp"
-#include "model/contact/paper.hpp"
 #include "model/tube.hpp"
 
 namespace ropewalk {
@@ -93,17 +87,6 @@ struct Validity {
   }
 };
 
-// The `line` law of a set, with the input of its integrals.
-struct LineParameters {
-  double surface_density = 0;  // atoms per nm^2
-  LineDensity density;         // line density of two tubes of this kind
-  double pair_spacing = 0;     // nm
-  double pair_energy = 0;      // eV/nm
-  double cross90_energy = 0;   // eV
-  UniversalLine universal;     // also epsilon, sigma and cutoff of the atom-atom law
-  bool has_universal = false;
-};
-
 struct ParameterSet {
   std::string name;
   std::string reference;
@@ -118,14 +101,25 @@ struct ParameterSet {
   std::optional<Anharmonic> anharmonic;
   std::optional<Pull> pull;                          // part of `anharmonic`, as the file has it
   std::array<double, PULL_STEPS + 1> pull_errors{};  // standard errors of its forces, eV/nm
-  std::optional<PaperContact> paper;
-  std::optional<LineParameters> line;
+  std::map<std::string, std::any> laws;              // numbers of contact laws, by name: io/law_numbers.hpp
   Validity validity;
   std::vector<Quantity> quantities;  // every number of the file, in its order, and what it leaves out of the pull
   std::vector<Correlation> correlations;
   std::vector<std::pair<std::string, std::string>> provenance;
   std::string path;  // where it was read from
   std::string hash;  // xxh64 of the file, hex
+
+  // Numbers of the contact law that Numbers::law names; null if the set has none.
+  template <class Numbers>
+  const Numbers* law() const {
+    const auto at = laws.find(Numbers::law);
+    return at == laws.end() ? nullptr : std::any_cast<Numbers>(&at->second);
+  }
+  template <class Numbers>
+  Numbers* law() {
+    const auto at = laws.find(Numbers::law);
+    return at == laws.end() ? nullptr : std::any_cast<Numbers>(&at->second);
+  }
 
   // The largest strain to which bonds follow the atoms.
   double end_of_stretch() const {

@@ -10,6 +10,8 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/potential_spread.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "report/page.hpp"
 #include "sim/state/uniform_chain.hpp"
 
@@ -85,8 +87,8 @@ LineChart chart_of(const std::vector<ParameterSet>& sets, const char* title, con
 }
 
 double parallel(const ParameterSet& set, double distance) {
-  return set.line ? line_parallel_energy(set.line->density, distance)
-                  : paper_parallel_energy(*set.paper, set.element_length, distance);
+  return set.law<LineParameters>() ? line_parallel_energy(set.law<LineParameters>()->density, distance)
+                                   : paper_parallel_energy(*set.law<PaperContact>(), set.element_length, distance);
 }
 
 std::vector<std::string> heads(const std::vector<ParameterSet>& sets) {
@@ -174,11 +176,11 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
            sets, "Energy of two parallel tubes", {"distance of the axes minus 2 r", "nm"}, energy,
            [](const ParameterSet& s, double& a, double& b) {
              a = 0.285, b = 0.9;
-             if (s.filament && s.line) {
-               const double gap = s.line->pair_spacing - 2 * s.radius;
+             if (s.filament && s.law<LineParameters>()) {
+               const double gap = s.law<LineParameters>()->pair_spacing - 2 * s.radius;
                a = 0.9 * gap, b = 3 * gap;
              }
-             return s.line || s.paper;
+             return s.law<LineParameters>() || s.law<PaperContact>();
            },
            [](const ParameterSet& s, double x) {
              const double e = parallel(s, x + 2 * s.radius);
@@ -189,10 +191,11 @@ std::string sets_page(const std::vector<ParameterSet>& sets) {
            sets, "Energy of crossed tubes", {"crossing angle", "degrees"}, {"energy", "eV"},
            [](const ParameterSet& s, double& a, double& b) {
              a = 15, b = 90;
-             return s.line.has_value();
+             return s.law<LineParameters>() != nullptr;
            },
            [](const ParameterSet& s, double x) {
-             return line_crossed_energy(s.line->density, s.line->pair_spacing, x * units::degree);
+             return line_crossed_energy(s.law<LineParameters>()->density, s.law<LineParameters>()->pair_spacing,
+                                        x * units::degree);
            }),
        "Two tubes that cross at the equilibrium distance of parallel ones, by the line law."}};
   std::string pair;

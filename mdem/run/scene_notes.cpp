@@ -7,6 +7,7 @@
 
 #include "io/grade.hpp"
 #include "io/toml_text.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/self_contact.hpp"
 #include "model/units.hpp"
 #include "observe/bending.hpp"
@@ -38,9 +39,9 @@ void warn_of_long_elements(const ParameterSet& set, double length, std::vector<s
 void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::string>& warnings) {
   const ParameterSet& set = scene.parameters();
   const auto* paper = dynamic_cast<const PaperLaw*>(law);
-  if (!paper || !set.line) return;
+  if (!paper || !set.law<LineParameters>()) return;
   const PaperWells w = paper_wells(paper->contact, scene.element_length);
-  const LineParameters& integral = *set.line;
+  const LineParameters& integral = *set.law<LineParameters>();
   const double off = std::max({std::fabs(w.parallel / integral.pair_energy - 1),
                                std::fabs(w.crossed_deepest / integral.cross90_energy - 1),
                                std::fabs(w.crossed_shallowest / integral.cross90_energy - 1)});

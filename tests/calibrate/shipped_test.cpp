@@ -6,6 +6,8 @@
 #include "atoms/lattice.hpp"
 #include "contact/integral.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "scene/laws/line.hpp"
 #include "scene/scene_to_model.hpp"
 #include "scene/scene_toml.hpp"
@@ -38,7 +40,7 @@ class ShippedPair : public ::testing::TestWithParam<TubePair> {
     // A set beside itself is its own fit; beside another, the universal law.
     contact = std::string(GetParam().i) == GetParam().j ? line_contacts(scene_of({GetParam().i}))[0] : all[1];
     AtomLaw law;
-    const LineParameters &a = *s.sets[0].line, &b = *s.sets[1].line;
+    const LineParameters &a = *s.sets[0].law<LineParameters>(), &b = *s.sets[1].law<LineParameters>();
     ASSERT_EQ(a.universal.epsilon, law.epsilon);
     ASSERT_EQ(a.universal.lj_cutoff, law.cutoff);
     integral = std::make_unique<PairIntegral>(law, Shell{s.sets[0].radius, a.surface_density},
@@ -98,8 +100,8 @@ TEST(ShippedSets, AreAllThereAndReadable) {
   for (const char* tube :
        {"5-5", "6-6", "8-8", "10-10", "12-12", "15-15", "20-20", "9-0", "17-0", "6-4", "8-2", "12-6", "16-4"}) {
     const ParameterSet set = shipped("cnt-" + std::string(tube) + "-tersoff");
-    EXPECT_TRUE(set.line && set.line->has_universal) << tube;
-    EXPECT_TRUE(set.paper) << tube;
+    EXPECT_TRUE(set.law<LineParameters>() && set.law<LineParameters>()->has_universal) << tube;
+    EXPECT_TRUE(set.law<PaperContact>()) << tube;
     EXPECT_EQ(set.quantities[0].origin, "calibrated");
     // A thin shell: EI = EA r^2/2 within a few per cent, whatever the chirality.
     EXPECT_NEAR(set.bond.bend / (0.5 * set.bond.stretch * set.radius * set.radius), 1, 0.04) << tube;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "io/parameters_toml.hpp"
+#include "model/contact/paper.hpp"
 #include "model/error.hpp"
 #include "observe/observe.hpp"
 #include "scene/prepare.hpp"
@@ -43,8 +44,8 @@ TEST(UntwistedRope, IsPackedHexagonallyWithoutCharge) {
 // relaxed spacing is a little smaller.
 TEST(UntwistedRope, SpacingAndCohesion) {
   Scene scene = rope_scene(91, 27.12);
-  EXPECT_NEAR(pair_spacing(*scene.parameters().paper, 1.356), 1.713, 1e-3);
-  EXPECT_NEAR(paper_parallel_energy(*scene.parameters().paper, 1.356, 1.713), -2.19, 0.01);
+  EXPECT_NEAR(pair_spacing(*scene.parameters().law<PaperContact>(), 1.356), 1.713, 1e-3);
+  EXPECT_NEAR(paper_parallel_energy(*scene.parameters().law<PaperContact>(), 1.356, 1.713), -2.19, 0.01);
 
   // Difference of two lengths, so that the ends drop out.
   const auto vdw = [](double length) {

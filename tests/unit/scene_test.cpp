@@ -12,6 +12,7 @@
 
 #include "io/parameters_toml.hpp"
 #include "io/toml_table.hpp"
+#include "model/contact/paper.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
 #include "observe/observe.hpp"
@@ -222,8 +223,8 @@ TEST(ShippedSet, HasThePublishedValues) {
 
 TEST(ShippedSet, HasThePublishedContact) {
   const ParameterSet set = read_parameters(shipped_set);
-  ASSERT_TRUE(set.paper);
-  const PaperContact a = *set.paper, b = test::published_contact();
+  ASSERT_TRUE(set.law<PaperContact>());
+  const PaperContact a = *set.law<PaperContact>(), b = test::published_contact();
   EXPECT_EQ(a.radius, b.radius);
   EXPECT_EQ(a.epsilon, b.epsilon);
   EXPECT_EQ(a.repulsion, b.repulsion);

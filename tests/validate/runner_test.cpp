@@ -12,6 +12,7 @@
 #include "core/reference.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "validate/support.hpp"
 
@@ -305,7 +306,7 @@ TEST_F(StoredReference, IsThatOfTheSamePotentialAndLaw) {
   t.add("between_tubes", between_tubes(set));
   EXPECT_NO_THROW(get());
   context.make_atoms = false;
-  set.line->universal.epsilon *= 2;
+  set.law<LineParameters>()->universal.epsilon *= 2;
   EXPECT_THROW(get(), NotApplicable) << "another law between tubes";
   context.make_atoms = true;
   EXPECT_NO_THROW(get()) << "made anew";

@@ -11,6 +11,7 @@
 #include "chart/chart.hpp"
 #include "chart/kinds.hpp"
 #include "chart/overview.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "report/scatter.hpp"
 
 namespace ropewalk::validate {
@@ -361,8 +362,10 @@ std::string scenes_table(const std::vector<ChartRow>& rows) {
         escape_markup(scene.title), t.tubes(), number_text(set.radius, 3),
         turned ? number_text(set.radius * twist, 2) : "", rope ? number_text(outermost * twist, 2) : "",
         number_text(s.element / set.radius, 3),
-        scene.contact ? number_text(std::fabs(set.line->pair_energy) * set.radius * set.radius / set.bond.bend, 2)
-                      : "");
+        scene.contact
+            ? number_text(
+                  std::fabs(set.law<LineParameters>()->pair_energy) * set.radius * set.radius / set.bond.bend, 2)
+            : "");
   }
   return html + "</tbody></table></div>\n";
 }

@@ -9,6 +9,8 @@
 
 #include "core/case_text.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::validate {
@@ -80,11 +82,11 @@ Fault wrong_contact(double factor) { return {1, 1, 1, factor, false}; }
 Fault without_torque() { return {1, 1, 1, 1, true}; }
 
 void scale_contact(ParameterSet& set, double factor) {
-  if (set.line) {
-    set.line->density.K *= factor;
-    set.line->universal.epsilon *= factor;
+  if (set.law<LineParameters>()) {
+    set.law<LineParameters>()->density.K *= factor;
+    set.law<LineParameters>()->universal.epsilon *= factor;
   }
-  if (set.paper) set.paper->epsilon *= factor;
+  if (set.law<PaperContact>()) set.law<PaperContact>()->epsilon *= factor;
 }
 
 ParameterSet CaseContext::model(std::size_t k) const {
@@ -135,8 +137,10 @@ bool like(const ParameterSet& i, const ParameterSet& j) {
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped) {
   if (given.filament && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
-  if (c.law == Case::Law::line && !given.line) throw NotApplicable("the set has no contact law `line`");
-  if (c.law == Case::Law::paper && !given.paper) throw NotApplicable("the set has no contact law `paper`");
+  if (c.law == Case::Law::line && !given.law<LineParameters>())
+    throw NotApplicable("the set has no contact law `line`");
+  if (c.law == Case::Law::paper && !given.law<PaperContact>())
+    throw NotApplicable("the set has no contact law `paper`");
   const auto is_like = [&](const ParameterSet& set) { return like(set, given); };
   if (!c.only_these.empty() && std::none_of(shipped.begin(), shipped.end(), is_like))
     throw NotApplicable(c.only_these);

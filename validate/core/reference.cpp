@@ -10,6 +10,7 @@
 #include "io/csv_reader.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::validate {
@@ -120,7 +121,7 @@ std::string find_reference(const CaseContext& context, const ParameterSet& set, 
 }
 
 std::string between_tubes(const ParameterSet& set) {
-  const UniversalLine& law = set.line.value().universal;
+  const UniversalLine& law = set.law<LineParameters>()->universal;
   return fmt::format("Lennard-Jones, {} eV, {} nm, cut at {} nm, not shifted", law.epsilon, law.sigma,
                      law.lj_cutoff);
 }
@@ -130,7 +131,7 @@ void check_origin(const ReferenceTable& table, const std::string& path, const Pa
   if (table.value("potential").find("hash " + hash) == std::string::npos)
     throw NotApplicable(
         fmt::format("{} was made with another interatomic potential, {}", path, table.value("potential")));
-  if (!law.empty() && (!set.line || law != between_tubes(set)))
+  if (!law.empty() && (!set.law<LineParameters>() || law != between_tubes(set)))
     throw NotApplicable(fmt::format("in {} tubes attract by another law: {}", path, law));
 }
 

@@ -9,6 +9,7 @@
 
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "parametrize/parametrize.hpp"
 
 namespace ropewalk::validate {
@@ -190,8 +191,9 @@ std::vector<Figure> overview_figures(const std::vector<ParametrizedTube>& tubes)
       {chart("GJ over that of a thin wall", r, {"GJ/(2πr³)", "N/m"}, lines),
        "Twist: the shear stiffness of the sheet. Ab initio: 150 N/m, from 345 N/m and a Poisson ratio of "
        "0.149 (the same source)."});
-  lines = by_potential(
-      tubes, radius, [](const ParametrizedTube& t) { return t.set.line ? t.set.line->pair_energy : std::nan(""); });
+  lines = by_potential(tubes, radius, [](const ParametrizedTube& t) {
+    return t.set.law<LineParameters>() ? t.set.law<LineParameters>()->pair_energy : std::nan("");
+  });
   figures.push_back(
       {chart("Energy of two parallel tubes", r, {"energy per length", "eV/nm"}, lines),
        "Cohesion of two parallel tubes at rest. It follows from the Lennard-Jones law between atoms and "

@@ -23,6 +23,7 @@
 #include "io/grade.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/processes.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
 
@@ -290,7 +291,8 @@ void print_line(const ParametrizedTube& t) {
   const Check* rope = worst_rope(t);
   fmt::print("{:<24} {:<7} EA {:.4g} nN, EI {:.4g} nN nm^2, GJ {:.4g} nN nm^2, pair {:.4g} eV/nm{}\n", t.name,
              t.verdict(), t.set.bond.stretch * units::eV_in_nN_nm, t.set.bond.bend * units::eV_in_nN_nm,
-             t.set.bond.twist * units::eV_in_nN_nm, t.set.line ? t.set.line->pair_energy : 0,
+             t.set.bond.twist * units::eV_in_nN_nm,
+             t.set.law<LineParameters>() ? t.set.law<LineParameters>()->pair_energy : 0,
              rope ? fmt::format(", ropes within {:.1f} %", 100 * std::fabs(rope->difference())) : "");
   for (const PairFriction& f : t.frictions)
     fmt::print("{:<24}         friction {:.3g} pN/nm along the axis, {:.3g} pN/nm against spin: {}.toml\n", "",

@@ -98,6 +98,8 @@ struct FactorTerms {
 };
 
 struct PaperContact {
+  static constexpr const char* law = "paper";  // its name in parameter sets
+
   double radius = 0;      // r, nm
   double epsilon = 0;     // eV
   double repulsion = 0;   // A

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "io/grade.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/laws/contact_law_kind.hpp"
 #include "scene/scene.hpp"
 #include "sim/contact/line/law.hpp"
@@ -20,8 +21,9 @@ std::vector<LineDensity> line_densities(const Scene& scene) {
       // One set that is named twice is one kind of tube.
       out.push_back(
           &i == &j || (!i.hash.empty() && i.hash == j.hash)
-              ? i.line->density
-              : i.line->universal.density(i.radius, i.line->surface_density, j.radius, j.line->surface_density));
+              ? i.law<LineParameters>()->density
+              : i.law<LineParameters>()->universal.density(i.radius, i.law<LineParameters>()->surface_density,
+                                                           j.radius, j.law<LineParameters>()->surface_density));
       if (scene.contact.cutoff > 0) out.back() = with_cutoff(out.back(), scene.contact.cutoff);
     }
   return out;
@@ -29,7 +31,7 @@ std::vector<LineDensity> line_densities(const Scene& scene) {
 
 // Contact between tubes of two kinds comes from the universal law, which must be one and the same.
 void check_mixture(const TomlTable& top, const Scene& scene) {
-  const LineParameters& first = *scene.sets[0].line;
+  const LineParameters& first = *scene.sets[0].law<LineParameters>();
   for (const ParameterSet& set : scene.sets) {
     if (set.filament || scene.sets[0].filament) {
       if (set.hash == scene.sets[0].hash) continue;
@@ -38,7 +40,7 @@ void check_mixture(const TomlTable& top, const Scene& scene) {
                                   scene.sets[0].name, set.name),
                       "take one of them, or [contact] law = \"none\"");
     }
-    if (scene.sets.size() > 1 && !set.line->has_universal)
+    if (scene.sets.size() > 1 && !set.law<LineParameters>()->has_universal)
       throw top.error("parameters", fmt::format("{} has no [contact.line.universal]", set.name),
                       "tubes of different kinds need it; make the set with `ropewalk calibrate`");
     if (const double error = universal_error(set); scene.sets.size() > 1 && error > unusable_contact)
@@ -48,7 +50,7 @@ void check_mixture(const TomlTable& top, const Scene& scene) {
                       "{:.2g} % of the well for it",
                       set.name, 100 * error),
           "take it alone, or another tube");
-    if (!(set.line->universal == first.universal))
+    if (!(set.law<LineParameters>()->universal == first.universal))
       throw top.error("parameters",
                       fmt::format("{} and {} have different van der Waals laws", scene.sets[0].name, set.name),
                       "calibrate both with the same --lj and --lj-cutoff");
@@ -95,7 +97,7 @@ std::vector<EndContact> contacts_of_ends(const Scene& scene) {
   };
   for (const ParameterSet& i : scene.sets)
     for (const ParameterSet& j : scene.sets) {
-      const UniversalLine& atoms = i.line->universal;
+      const UniversalLine& atoms = i.law<LineParameters>()->universal;
       out.emplace_back(LennardJones{atoms.epsilon, atoms.sigma, atoms.lj_cutoff}, end_of(i), end_of(j));
     }
   return out;
@@ -109,7 +111,7 @@ ContactLawKind line_kind() {
   ContactLawKind kind;
   kind.name = "line";
   kind.make = line_law_of;
-  kind.in_set = [](const ParameterSet& set) { return set.line.has_value(); };
+  kind.in_set = [](const ParameterSet& set) { return set.law<LineParameters>() != nullptr; };
   kind.ends = contacts_of_ends;
   kind.check = check_mixture;
   return kind;

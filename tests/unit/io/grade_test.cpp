@@ -11,6 +11,7 @@
 #include "io/data_files.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "run/run_directory.hpp"
 #include "scene/scene_to_model.hpp"
@@ -118,11 +119,11 @@ TEST(Grade, EveryShippedSetSaysHowMuchRegistryCounts) {
 
 TEST(Grade, FindsNumbersThatContradictEachOther) {
   ParameterSet law = shipped("cnt-10-10-tersoff");
-  law.line->density.K *= 1.05;
+  law.law<LineParameters>()->density.K *= 1.05;
   EXPECT_NE(grade_of(law).words().find("eV/nm, and pair_energy is -1.011: one of them is wrong"), std::string::npos)
       << grade_of(law).words();
   ParameterSet density = shipped("cnt-10-10-tersoff");
-  density.line->surface_density *= 2;
+  density.law<LineParameters>()->surface_density *= 2;
   EXPECT_NE(grade_of(density).words().find("unfit: atoms_per_length and radius give 37.04 atoms per nm^2"),
             std::string::npos)
       << grade_of(density).words();

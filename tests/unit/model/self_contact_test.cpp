@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_to_model.hpp"
@@ -113,12 +114,12 @@ TEST(SelfContact, AHairpinBindsTheSameInElementsOfAnyLength) {
   for (const auto& [name, tried] :
        {std::pair("cnt-10-10-tersoff", lengths), std::pair("cnt-5-5-tersoff", shorter)}) {
     const ParameterSet set = scene_of(name, 1).parameters();
-    const double spacing = set.line->pair_spacing, radius = 1.3 / set.validity.kink_curvature;
+    const double spacing = set.law<LineParameters>()->pair_spacing, radius = 1.3 / set.validity.kink_curvature;
     const double head = length_of(racket(0, spacing, radius));
     for (const double length : tried) {
       const double arm = 0.5 * (length * std::round((86.4 + head) / length) - head);  // a whole number of elements
       const double expected = contact_energy(scene_of(name, 0.345), racket(arm, spacing, radius));
-      EXPECT_LT(expected, 0.9 * arm * set.line->pair_energy);
+      EXPECT_LT(expected, 0.9 * arm * set.law<LineParameters>()->pair_energy);
       EXPECT_NEAR(contact_energy(scene_of(name, length), racket(arm, spacing, radius)) / expected, 1, 0.03)
           << name << ", elements of " << length << " nm";
     }
@@ -126,7 +127,7 @@ TEST(SelfContact, AHairpinBindsTheSameInElementsOfAnyLength) {
 }
 
 TEST(SelfContact, AFoldBeyondTheKinkBindsToo) {
-  const double spacing = scene_of("cnt-10-10-tersoff", 1).parameters().line->pair_spacing;
+  const double spacing = scene_of("cnt-10-10-tersoff", 1).parameters().law<LineParameters>()->pair_spacing;
   const std::vector<Arc> fold = {{30, 0}, {0.5 * spacing * units::pi, 2 / spacing}, {30, 0}};
   const double expected = contact_energy(scene_of("cnt-10-10-tersoff", 0.345), fold);
   for (const double length : {0.69, 1.38, 2.8, 5.4})
@@ -149,7 +150,7 @@ TEST(SelfContact, ATubeWithoutALoopDoesNotAttractItself) {
 }
 
 TEST(SelfContact, TheLengthMayBeTyped) {
-  const double spacing = scene_of("cnt-10-10-tersoff", 1).parameters().line->pair_spacing;
+  const double spacing = scene_of("cnt-10-10-tersoff", 1).parameters().law<LineParameters>()->pair_spacing;
   const double longer = contact_energy(scene_of("cnt-10-10-tersoff", 1.38, "exclude_along_tube_nm = 200\n"),
                                        racket(40, spacing, 13)),
                whole = contact_energy(scene_of("cnt-10-10-tersoff", 1.38), racket(40, spacing, 13));

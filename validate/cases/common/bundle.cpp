@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/contact/line_parameters.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
@@ -10,7 +11,7 @@
 namespace ropewalk::validate {
 
 LineContact line_contact_of(const ParameterSet& set) {
-  const LineDensity& density = set.line->density;
+  const LineDensity& density = set.law<LineParameters>()->density;
   const int nodes = line_nodes(set.element_length, line_parallel_well(density).distance, density.contact);
   return {density, set.element_length, set.element_length, nodes, nodes};
 }
@@ -18,16 +19,16 @@ LineContact line_contact_of(const ParameterSet& set) {
 PairIntegral surface_integral(const ParameterSet& set) {
   if (set.filament)
     throw NotApplicable("the oracle is the surface integral over the atoms of two tubes, and a filament has none");
-  const UniversalLine& atoms = set.line->universal;
+  const UniversalLine& atoms = set.law<LineParameters>()->universal;
   const AtomLaw law{atoms.epsilon, atoms.sigma,
                     atoms.lj_cutoff > 0 ? atoms.lj_cutoff : std::numeric_limits<double>::infinity()};
-  const Shell shell{set.radius, set.line->surface_density};
+  const Shell shell{set.radius, set.law<LineParameters>()->surface_density};
   return PairIntegral(law, shell, shell);
 }
 
 Well pair_well(const ParameterSet& set) {
   if (!set.filament) return surface_integral(set).parallel_well();
-  const LineWell well = line_parallel_well(set.line->density);
+  const LineWell well = line_parallel_well(set.law<LineParameters>()->density);
   return {well.distance, well.energy};
 }
 
@@ -44,7 +45,7 @@ Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   Bundle b;
   b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
-  b.spacing = line_parallel_well(set.line->density).distance;
+  b.spacing = line_parallel_well(set.law<LineParameters>()->density).distance;
   add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;

@@ -3,6 +3,7 @@
 
 #include "cases/common/chain.hpp"
 #include "contact/integral.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate {
 

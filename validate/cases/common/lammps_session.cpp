@@ -9,6 +9,7 @@
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/removal.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::validate {
@@ -36,10 +37,10 @@ Potential potential_of(const ParameterSet& set) {
 
 AtomLaw law_of(const ParameterSet& set) {
   AtomLaw law;
-  if (!set.line) return law;
-  law.epsilon = set.line->universal.epsilon;
-  law.sigma = set.line->universal.sigma;
-  law.cutoff = set.line->universal.lj_cutoff;
+  if (!set.law<LineParameters>()) return law;
+  law.epsilon = set.law<LineParameters>()->universal.epsilon;
+  law.sigma = set.law<LineParameters>()->universal.sigma;
+  law.cutoff = set.law<LineParameters>()->universal.lj_cutoff;
   if (law.cutoff <= 0) throw NotApplicable("the law between atoms of two tubes has no cutoff, which lj/cut needs");
   return law;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/checks.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate {
 namespace {
@@ -28,7 +29,7 @@ bool bearable(const RopeInMachine& rope, double twist) {
 void check_at(const RopeInMachine& rope, const CaseTube& tube, double degrees, Length kept, CaseResult& result) {
   const double twist = rope.twist_at(degrees * units::degree);
   const RopeInMachine::Reading seen = rope.wound(twist, kept), exact = rope.theory(tube.set, twist, kept);
-  const bool paper = !tube.set.line.has_value();
+  const bool paper = !tube.set.law<LineParameters>();
   const std::string at =
       fmt::format("{} tubes of {}, {:g}°", rope.tubes, paper ? "the published set" : tube.name, degrees);
   const bool initial = degrees<1, steep = degrees> 12;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/contact/line_parameters.hpp"
 #include "observe/loading.hpp"
 #include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
@@ -165,7 +166,7 @@ RopeInMachine::Reading RopeInMachine::theory(const ParameterSet& oracle, double 
     double bound = 0;
     for (std::size_t t = 0; t < radii.size(); ++t)
       bound += cohesion[t] / (bond_stretch_ * std::hypot(lambda, radii[t] * phi));
-    const double wound = set.line ? 1 + std::pow(phi * spacing, 2) / 4 : 1;
+    const double wound = set.law<LineParameters>() ? 1 + std::pow(phi * spacing, 2) / 4 : 1;
     return bonds(phi, lambda) - wound * bound / tubes + bond_stretch_ * crowding(phi);
   };
   constexpr double step = 1e-6;

@@ -10,6 +10,7 @@
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "io/parameters_toml.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/lattice.hpp"
 
 namespace ropewalk::validate {
@@ -67,7 +68,7 @@ std::string input_text(const TwistedRope& rope, const ParameterSet& set, const M
                        const std::vector<RopeTube>& atoms, const std::vector<double>& angles,
                        const std::string& results, bool axial_free) {
   std::string text = header_commands("s s s", 0.05) + "read_data rope.data\n";
-  text += rope_pairs(session.potential(), set.line->universal) + rope_groups(atoms);
+  text += rope_pairs(session.potential(), set.law<LineParameters>()->universal) + rope_groups(atoms);
   text +=
       "fix ref all store/state 0 x y z\n"
       "compute lj all pair lj/cut\n"
@@ -178,7 +179,7 @@ std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& se
     middle += heights.back() / static_cast<double>(sites.size());
   }
   std::vector<RopeTube> out;
-  for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
+  for (const auto& [x, y] : hexagonal_lattice(tubes, set.law<LineParameters>()->pair_spacing)) {
     const int t = static_cast<int>(out.size());
     const Eigen::AngleAxisd turn(turn_of(t, c), Vector3::UnitZ());
     const Vector3 shift(x, y, shift_of(t, row));

@@ -4,6 +4,7 @@
 
 #include "cases/common/gripped_rope.hpp"
 #include "cases/common/twisted_rope.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/lattice.hpp"
 #include "scene/loads/fix.hpp"
 #include "sim/contact/line/law.hpp"
@@ -23,7 +24,8 @@ GrippedRope clamped_rope(const TwistedRope& rope, const ParameterSet& set) {
   // its excess over the free rows.
   const double band = rope.band_rows * row_distance(set) - 0.5 * (length - rope.free_rows * row_distance(set));
   const int beyond = std::max(1, static_cast<int>(std::lround(band / a - 0.5)));
-  GrippedRope out(divided, rope.bonds, line_law({line_contact_of(divided)}), set.line->pair_spacing, beyond + 1);
+  GrippedRope out(divided, rope.bonds, line_law({line_contact_of(divided)}),
+                  set.law<LineParameters>()->pair_spacing, beyond + 1);
   out.topology.types.front().bond = set.anharmonic_bond(length);
   return out;
 }

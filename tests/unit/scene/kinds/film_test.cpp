@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "scene/build.hpp"
 #include "scene/scene_toml.hpp"
@@ -117,7 +118,8 @@ TEST(Film, NothingIsCloserThanTheSpacingAndTubesRestOnOthers) {
 // The crossed well of the law.
 TEST(Film, SpacingIsThatOfCrossedTubes) {
   Scene scene = film_scene(dense);
-  const double well = line_crossed_well(scene.parameters().line->density, 0.5 * units::pi).distance;
+  const double well =
+      line_crossed_well(scene.parameters().law<LineParameters>()->density, 0.5 * units::pi).distance;
   EXPECT_NEAR(crossed_spacing(scene), well, 1e-9);
   EXPECT_NEAR(closest(rods(build(scene)), 10 * element), well, 1e-9);
   Scene paper =

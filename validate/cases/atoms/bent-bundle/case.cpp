@@ -21,6 +21,7 @@
 #include "cases/common/lammps_session.hpp"
 #include "cases/common/tube_pair.hpp"
 #include "cases/common/twisted_rope.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "scene/lattice.hpp"
 
@@ -84,7 +85,7 @@ std::string placement_text(const Grips& grips, const ParameterSet& set, double l
   std::string text = "variable i equal 0\n";
   std::string offset;  // offset of each atom's tube from the axis
   int type = 0;
-  for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) {
+  for (const auto& [x, y] : hexagonal_lattice(tubes, set.law<LineParameters>()->pair_spacing)) {
     ++type;
     offset += fmt::format("{}{:.12f}*(type=={})", type == 1 ? "" : "+", x / angstrom, type);
   }
@@ -118,7 +119,7 @@ std::string bending_input(const Grips& grips, const ParameterSet& set, const MdS
         most, 3 * most, grips.name);
   };
   std::string text = header_commands("s s s", 0.05) + "read_data bundle.data\n";
-  text += rope_pairs(session.potential(), set.line->universal) + rope_groups(atoms);
+  text += rope_pairs(session.potential(), set.law<LineParameters>()->universal) + rope_groups(atoms);
   text += grips.glued ? "group core union all\n" : "group core type 1\n";
   text +=
       "group grips intersect held core\n"
@@ -165,9 +166,9 @@ ReferenceTable slide_pairs(const CaseContext& context, const ParameterSet& set) 
   const Chirality c = set.chirality;
   MdSession session(context, set);
   const TubeShape shape{set.radius, row_distance(set) / c.n, 0, 0, 0};
-  const auto rows =
-      slid_pairs(session, "pair", c, shape,
-                 {periods * period_hexagons(c), set.line->pair_spacing, period_of(c, shape), turns, shifts});
+  const auto rows = slid_pairs(
+      session, "pair", c, shape,
+      {periods * period_hexagons(c), set.law<LineParameters>()->pair_spacing, period_of(c, shape), turns, shifts});
   ReferenceTable t = session.table("Energy of two frozen parallel (5,5) tubes against axial shift", "bent-bundle",
                                    true, {"turn_i", "turn_j", "shift_nm", "energy_eV_per_nm"});
   t.rows = rows;
@@ -294,7 +295,7 @@ struct Bounds {
 
 Bounds bounds_of(const ParameterSet& set) {
   double squares = 0;
-  for (const auto& [x, y] : hexagonal_lattice(tubes, set.line->pair_spacing)) squares += x * x;
+  for (const auto& [x, y] : hexagonal_lattice(tubes, set.law<LineParameters>()->pair_spacing)) squares += x * x;
   const double sliding_stiffness = tubes * set.bond.bend;
   return {sliding_stiffness, sliding_stiffness + set.bond.stretch * squares, clamped_length(bundle(), set)};
 }

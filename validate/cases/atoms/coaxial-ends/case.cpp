@@ -9,6 +9,7 @@
 
 #include "cases/common/tube_pair.hpp"
 #include "core/checks.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 #include "sim/forces/forces.hpp"
@@ -86,7 +87,7 @@ std::vector<double> of_model(const ParameterSet& set, const std::vector<double>&
 CaseResult run(const CaseContext& context) {
   CaseResult result;
   for (const CaseTube& tube : context.tubes()) {
-    if (!tube.set.line) throw NotApplicable("the set has no contact law of line");
+    if (!tube.set.law<LineParameters>()) throw NotApplicable("the set has no contact law of line");
     const ReferenceTable table = reference(
         context, tube.set, "coaxial-ends", 0.001, [&] { return make_reference(context, tube.set); }, result);
     const std::vector<double> gap = table.column("gap_nm"), atoms = table.column("energy_eV"),

@@ -9,6 +9,7 @@
 
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
+#include "model/contact/paper.hpp"
 
 namespace ropewalk::validate::pair_distance {
 namespace {
@@ -126,7 +127,7 @@ CaseFigure energy_figure(const std::vector<PairCurve>& curves) {
 // The published law beside the atoms of its tube: binds about twice as strongly.
 void add_published(const ParameterSet& published, const LineWell& atoms, LineChart& chart, CaseResult& result) {
   const auto paper = [&](double distance) {
-    return paper_parallel_energy(*published.paper, published.element_length, distance);
+    return paper_parallel_energy(*published.law<PaperContact>(), published.element_length, distance);
   };
   const LineWell well = detail::lowest_point(paper, 1.6, 2.6);
   result.show_relative("(10,10) paper law: cohesion over that of the atoms", well.energy / atoms.energy, 1,

@@ -11,6 +11,7 @@
 
 #include "cases/common/tube_curve.hpp"
 #include "cases/common/tube_pair.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate::pair_sliding {
 namespace {
@@ -189,8 +190,8 @@ struct FlushEnds {
   double force = 0;   // eV/nm, the largest one by s
 };
 FlushEnds flush_ends(const ParameterSet& set, double distance) {
-  const LineDensity& density = set.line->density;
-  const UniversalLine& atoms = set.line->universal;
+  const LineDensity& density = set.law<LineParameters>()->density;
+  const UniversalLine& atoms = set.law<LineParameters>()->universal;
   const double cutoff = atoms.lj_cutoff > 0 ? atoms.lj_cutoff : density.cutoff();
   const AtomLaw law{atoms.epsilon, atoms.sigma, cutoff};
   constexpr int angles = 240;
@@ -206,7 +207,7 @@ FlushEnds flush_ends(const ParameterSet& set, double distance) {
         if (rho < cutoff) sum += law.energy(rho);
       }
     }
-    const double per_point = 2 * units::pi * set.radius / angles * set.line->surface_density;
+    const double per_point = 2 * units::pi * set.radius / angles * set.law<LineParameters>()->surface_density;
     return sum * per_point * per_point;
   };
   FlushEnds out;

@@ -17,6 +17,7 @@
 #include "cases/common/tube_pair.hpp"
 #include "cases/common/twisted_rope.hpp"
 #include "io/files.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "model/error.hpp"
 #include "scene/lattice.hpp"
 #include "scene/maxwell.hpp"
@@ -136,7 +137,7 @@ std::string relax_text(int iterations) {
 std::string warm_input(const ParameterSet& set, const MdSession& session, std::size_t atoms_per_slice) {
   const auto steps = [](double time) { return std::lround(time / md_step); };
   std::string text = header_commands("s s s", 0.1) + "read_data bundle.data\n";
-  text += rope_pairs(session.potential(), set.line->universal);
+  text += rope_pairs(session.potential(), set.law<LineParameters>()->universal);
   text += fmt::format(
       "compute lj all pair lj/cut\n"
       "variable slice atom floor((id-1)/{})+1\n"
@@ -365,7 +366,7 @@ void add_walls(const ReferenceTable& walls, const ParameterSet& set, const Measu
   const double variance = walls.column("radius_variance_nm2").at(0);
   const double wider = 2 * (walls.column("radius_nm").at(0) - walls.column("rest_radius_nm").at(0));
   const LineContact contact = contact_of(set, set, set.element_length);
-  const double d = set.line->pair_spacing, h = 0.004 * d;
+  const double d = set.law<LineParameters>()->pair_spacing, h = 0.004 * d;
   const auto energy = [&](int k) { return parallel_rows(contact, d + k * h); };
   const double second = (energy(1) - 2 * energy(0) + energy(-1)) / (h * h);
   const double third = (energy(2) - 2 * energy(1) + 2 * energy(-1) - energy(-2)) / (2 * h * h * h);

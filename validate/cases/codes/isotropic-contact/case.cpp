@@ -4,6 +4,7 @@
 #include "cases/common/bead_law.hpp"
 #include "cases/common/bundle.hpp"
 #include "cases/common/slide.hpp"
+#include "model/contact/paper.hpp"
 #include "scene/build.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
@@ -18,9 +19,9 @@ Slide slide(const ContactLaw& law, double element_length, double distance) {
 // Appends what the published law makes of the same rows, for comparison.
 void add_published(const ParameterSet& paper, double compression, std::vector<ChartLine>& lines,
                    CaseResult& result) {
-  const double length = paper.element_length, spacing = pair_spacing(*paper.paper, length);
-  const double well = std::fabs(paper_parallel_energy(*paper.paper, length, spacing));
-  const PaperLaw law(*paper.paper);
+  const double length = paper.element_length, spacing = pair_spacing(*paper.law<PaperContact>(), length);
+  const double well = std::fabs(paper_parallel_energy(*paper.law<PaperContact>(), length, spacing));
+  const PaperLaw law(*paper.law<PaperContact>());
   const Slide at_rest = slide(law, length, spacing);
   result.show_absolute("corrugation of the paper law over its well", at_rest.corrugation() / well, 0, 1e-3, "1",
                        "smooth where it was fitted");

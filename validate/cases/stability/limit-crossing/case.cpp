@@ -8,6 +8,8 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
 #include "sim/forces/forces.hpp"
@@ -179,7 +181,7 @@ Interaction line_interaction(const ParameterSet& set) {
 
 Interaction paper_interaction(const ParameterSet& set, bool legacy) {
   Interaction in;
-  in.law = paper_law(*set.paper, legacy);
+  in.law = paper_law(*set.law<PaperContact>(), legacy);
   return in;
 }
 
@@ -228,17 +230,18 @@ std::vector<Named> paths_of(RigidTubes& rows, RigidTubes& single, double spacing
 }
 
 void check_published_jump(const ParameterSet& model, const ParameterSet& oracle, CaseResult& result) {
-  PaperContact published = *model.paper;
+  PaperContact published = *model.law<PaperContact>();
   published.bisector_blend = 1e-12;
   ParameterSet sharp = model;
-  sharp.paper = published;
+  sharp.laws[PaperContact::law] = published;
   RigidTubes pair(sharp, paper_interaction(sharp, false), 1);
   const Vector3 centre(1.9, 0.4, 0.9);
   const Path path = turning(pair, centre);
   const double right = 0.5 * units::pi;
   const auto [jump, at] = largest_jump([&](double g) { return path(g).energy; }, right - 0.2, right + 0.3);
   const auto by_hand = [&](double angle) {
-    return published_energy(*oracle.paper, centre, Vector3::UnitZ(), {0, -std::sin(angle), std::cos(angle)});
+    return published_energy(*oracle.law<PaperContact>(), centre, Vector3::UnitZ(),
+                            {0, -std::sin(angle), std::cos(angle)});
   };
   const double theory = std::fabs(by_hand(right + 1e-9) - by_hand(right - 1e-9));
   result.check_relative("published form: angle at which it jumps", at * units::rad_in_degree, 90, 1e-4, "degrees",
@@ -283,7 +286,7 @@ CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const Parame
     paper_rows.put({paper_at, 0, 0}, degrees * units::degree);
     by_paper.push_back(paper_rows.energy());
   }
-  const double crossed = line_crossed_energy(line.line->density, line_at, 0.5 * units::pi);
+  const double crossed = line_crossed_energy(line.law<LineParameters>()->density, line_at, 0.5 * units::pi);
   return case_figure("Energy of two crossing tubes", {"crossing angle", "degrees"}, {"energy", "eV"},
                      "Two tubes of nine elements that cross in the middle, at the distance of two parallel ones.",
                      {theory_curve("endless tubes, E90/sin", 12, 90,
@@ -294,7 +297,7 @@ CaseFigure figure_of(RigidTubes& line_rows, RigidTubes& paper_rows, const Parame
 CaseResult run(const CaseContext& context) {
   const ParameterSet line = context.model(0), paper = context.model(1);
   const ParameterSet line_oracle = context.set(0), paper_oracle = context.set(1);
-  const double line_at = line_parallel_well(line_oracle.line->density).distance, paper_at = 1.713;
+  const double line_at = line_parallel_well(line_oracle.law<LineParameters>()->density).distance, paper_at = 1.713;
   RigidTubes line_rows(line, line_interaction(line), 9), line_single(line, line_interaction(line), 1);
   const Interaction published = paper_interaction(paper, context.fault.missing_torque);
   RigidTubes paper_rows(paper, published, 9), paper_single(paper, published, 1);
@@ -303,7 +306,7 @@ CaseResult run(const CaseContext& context) {
   check_law("paper law", paths_of(paper_rows, paper_single, paper_at, 1e-3), result);
   const double right = 0.5 * units::pi;
   line_rows.put({line_at, 0, 0}, right);
-  const double crossed = line_crossed_energy(line_oracle.line->density, line_at, right);
+  const double crossed = line_crossed_energy(line_oracle.law<LineParameters>()->density, line_at, right);
   result.check_relative("line law: energy at 90 degrees", line_rows.energy(), crossed, 0.01, "eV",
                         "nine elements against the closed integral of endless tubes");
   check_coinciding_nodes(line_single, line_oracle, result);

@@ -6,6 +6,8 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
+#include "model/contact/line_parameters.hpp"
+#include "model/contact/paper.hpp"
 #include "scene/build.hpp"
 #include "sim/contact/line/law.hpp"
 #include "sim/contact/paper/law.hpp"
@@ -140,13 +142,13 @@ constexpr int nodes = 4;  // on each element: their spacing follows from its len
 double line_corrugation(const ParameterSet& set, double spacing, double distance) {
   Interaction in;
   const double a = nodes * spacing;
-  in.law = line_law({{set.line->density, a, a, nodes, nodes}});
+  in.law = line_law({{set.law<LineParameters>()->density, a, a, nodes, nodes}});
   return Slide(in, a, distance).corrugation(spacing);
 }
 
 double paper_corrugation(const ParameterSet& set, double length, double distance) {
   Interaction in;
-  in.law = paper_law(*set.paper);
+  in.law = paper_law(*set.law<PaperContact>());
   return Slide(in, length, distance).corrugation(length);
 }
 
@@ -161,13 +163,13 @@ double poisson_corrugation(const std::function<double(double)>& pair, double rea
 }
 
 std::function<double(double)> line_pair_energy(const ParameterSet& set, double distance) {
-  return [d = set.line->density, distance](double z) { return d.energy(std::hypot(distance, z)); };
+  return [d = set.law<LineParameters>()->density, distance](double z) { return d.energy(std::hypot(distance, z)); };
 }
 
 void check_nodes(const CaseContext& context, CaseResult& result) {
   const ParameterSet model = context.model(0), oracle = context.set(0);
-  const LineWell well = line_parallel_well(oracle.line->density);
-  const double reach = oracle.line->density.cutoff();
+  const LineWell well = line_parallel_well(oracle.law<LineParameters>()->density);
+  const double reach = oracle.law<LineParameters>()->density.cutoff();
   CaseFigure figure = case_figure(
       "Corrugation of a row of nodes", {"tube distance over node spacing", ""},
       {"corrugation over the well", "", false, true},
@@ -198,7 +200,7 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
     ++colour;
   }
   result.figures.push_back(figure);
-  const int taken = line_nodes(oracle.element_length, well.distance, oracle.line->density.contact);
+  const int taken = line_nodes(oracle.element_length, well.distance, oracle.law<LineParameters>()->density.contact);
   result.show_absolute("node spacing over distance that `auto` takes",
                        oracle.element_length / taken / well.distance, 0, 0, "",
                        "every row of a scene has this spacing or less");
@@ -206,9 +208,10 @@ void check_nodes(const CaseContext& context, CaseResult& result) {
 
 void check_paper(const CaseContext& context, CaseResult& result) {
   const ParameterSet model = context.model(1), oracle = context.set(1);
-  const double distance = pair_spacing(*oracle.paper, oracle.element_length), reach = oracle.paper->cutoff();
+  const double distance = pair_spacing(*oracle.law<PaperContact>(), oracle.element_length),
+               reach = oracle.law<PaperContact>()->cutoff();
   const auto pair = [&](double z) {
-    return oracle.paper->energy({distance, 0, z}, Vector3::UnitZ(), Vector3::UnitZ());
+    return oracle.law<PaperContact>()->energy({distance, 0, z}, Vector3::UnitZ(), Vector3::UnitZ());
   };
   const double mean = std::fabs(transform(pair, reach, 0));
   const auto predicted = [&](double a) { return poisson_corrugation(pair, reach, a) / mean; };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cases/common/peeled_pair.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate::filament {
 namespace {
@@ -20,7 +21,7 @@ void check_buckling(const CaseTube& tube, CaseResult& result) {
 // Ends of beams that balance the adhesion part by w over a crack of (9 EI w^2/Gamma)^(1/4).
 void check_zipper(const CaseTube& tube, CaseResult& result, std::vector<double>& openings,
                   std::vector<double>& released) {
-  const double adhesion = -pair_well(tube.set).energy, reach = tube.set.line->density.cutoff_gap;
+  const double adhesion = -pair_well(tube.set).energy, reach = tube.set.law<LineParameters>()->density.cutoff_gap;
   for (const double part : {1.0, 2.0}) {
     const double w = part * reach, crack = std::pow(9 * tube.set.bond.bend * w * w / adhesion, 0.25);
     const Peel p = peel(tube.model, w, crack);

@@ -8,6 +8,7 @@
 
 #include "cases/common/bundle.hpp"
 #include "cases/common/scene_of_case.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "observe/growth.hpp"
 #include "observe/network.hpp"
 #include "scene/kinds/film.hpp"
@@ -212,7 +213,7 @@ void add_relaxed_figures(const std::vector<Relaxed>& films, CaseResult& result) 
 CaseResult run(const CaseContext& context) {
   const CaseTube tube = context.tube();
   const PairIntegral integral = surface_integral(tube.set);
-  const double spacing = line_crossed_well(tube.model.line->density, 0.5 * units::pi).distance;
+  const double spacing = line_crossed_well(tube.model.law<LineParameters>()->density, 0.5 * units::pi).distance;
   CaseResult result;
   result.check_relative("distance of the axes of tubes at rest on one another", spacing,
                         integral.crossed_well().distance, 1e-3, "nm", "place of the minimum");
@@ -246,8 +247,8 @@ CaseResult run(const CaseContext& context) {
   }
   const Relaxed& longest = films.back();
   result.check_relative(fmt::format("van der Waals energy of a film of {:.0f} nm as laid", longest.length),
-                        longest.energy, longest.crossings, 2 * tube.set.line->density.cutoff() / longest.length,
-                        "eV",
+                        longest.energy, longest.crossings,
+                        2 * tube.set.law<LineParameters>()->density.cutoff() / longest.length, "eV",
                         "ends of tubes within reach of others: twice the reach of the contact over the length");
   add_relaxed_figures(films, result);
   result.remarks.push_back(fmt::format(

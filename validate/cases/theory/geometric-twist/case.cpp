@@ -3,6 +3,7 @@
 
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate::geometric_twist {
 namespace {
@@ -11,7 +12,7 @@ CaseResult run(const CaseContext& context) {
   CaseResult result;
   for (std::size_t k = 0; k < context.sets.size(); ++k) {
     const CaseTube tube = context.tube(k);
-    const bool paper = !tube.set.line.has_value();
+    const bool paper = !tube.set.law<LineParameters>();
     const RopeInMachine pair(tube.model, 2, 40);
     const std::string of = paper ? " (published set)" : " " + tube.name;
     std::vector<double> leans, contractions;

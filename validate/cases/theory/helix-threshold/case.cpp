@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cases/common/bundle.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/lattice.hpp"
 
 namespace ropewalk::validate::helix_threshold {
@@ -32,12 +33,13 @@ double glued_bend(const ParameterSet& set, double spacing) {
 // Element spacing (nm) at which the bonds balance the cohesion, which shortens a rope as surface tension shortens a
 // drop. Bonds at their free length would leave the contact acting as a tension.
 double compressed_length(const ParameterSet& set) {
-  const auto places = hexagonal_lattice(tubes, line_parallel_well(set.line->density).distance);
+  const auto places = hexagonal_lattice(tubes, line_parallel_well(set.law<LineParameters>()->density).distance);
   double cohesion = 0;
   for (std::size_t t = 0; t < places.size(); ++t)
     for (std::size_t u = t + 1; u < places.size(); ++u)
-      cohesion -= line_parallel_energy(
-          set.line->density, std::hypot(places[t].first - places[u].first, places[t].second - places[u].second));
+      cohesion -=
+          line_parallel_energy(set.law<LineParameters>()->density,
+                               std::hypot(places[t].first - places[u].first, places[t].second - places[u].second));
   return set.element_length * (1 - cohesion / (tubes * set.bond.stretch));
 }
 
@@ -84,7 +86,7 @@ enum class Tubes { sliding, glued, touching };
 // displacement and one tilt. Glued: the tilt also moves the tubes lengthwise. Touching: every element has its own
 // freedoms.
 Sparse freedoms_of(Tubes kind, const ParameterSet& set, int bonds, Ends ends) {
-  const auto places = hexagonal_lattice(tubes, line_parallel_well(set.line->density).distance);
+  const auto places = hexagonal_lattice(tubes, line_parallel_well(set.law<LineParameters>()->density).distance);
   Entries entries;
   int columns = 0;
   if (kind == Tubes::touching) {

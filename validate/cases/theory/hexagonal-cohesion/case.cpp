@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cases/common/bundle.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate::hexagonal_cohesion {
 namespace {
@@ -32,10 +33,11 @@ CaseResult run(const CaseContext& context) {
                           rope_energy(integral, n, pair.distance), 3e-3, "eV/nm",
                           "contact fitted to 1.4e-3 of the well");
   }
-  result.check_relative("spacing", line_parallel_well(model.line->density).distance, pair.distance, 1e-3, "nm",
-                        "place of the minimum");
+  result.check_relative("spacing", line_parallel_well(model.law<LineParameters>()->density).distance, pair.distance,
+                        1e-3, "nm", "place of the minimum");
   const double second = std::sqrt(3.0) * pair.distance;
-  result.check_absolute("energy of second neighbours", line_parallel_energy(model.line->density, second),
+  result.check_absolute("energy of second neighbours",
+                        line_parallel_energy(model.law<LineParameters>()->density, second),
                         integral.parallel(second), 3e-3 * std::fabs(pair.energy), "eV/nm", "as the well");
   result.figure(
       "Cohesion of hexagonal ropes", {"tubes", "", true}, {"energy per length", "eV/nm"},

@@ -7,6 +7,7 @@
 #include "cases/common/scene_of_case.hpp"
 #include "cases/common/torsion_machine.hpp"
 #include "core/checks.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk::validate::pull_out {
@@ -40,7 +41,7 @@ CaseResult run(const CaseContext& context) {
   CaseResult result;
   for (std::size_t k = 0; k < context.sets.size(); ++k) {
     const CaseTube tube = context.tube(k);
-    const bool paper = !tube.set.line.has_value();
+    const bool paper = !tube.set.law<LineParameters>();
     const RopeInMachine rope(tube.set, 2, elements);  // for the oracle
     const double per_contact = 2 * rope.cohesion[0];  // each of the two tubes has half of it
     for (const auto& [name, which, contacts] : {std::tuple{"centre tube", 0, 6}, std::tuple{"outer tube", 1, 3}}) {
