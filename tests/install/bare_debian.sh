@@ -52,7 +52,7 @@ if [ -n "$earlier" ]; then
   inside bash -c 'apt-get install -y -qq --no-install-recommends /root/earlier/ropewalk_*.deb' >/dev/null
   as_user 'ropewalk --version && ropewalk run seven.toml --out done --quiet && ropewalk run seven.toml --out half --until 1 --quiet' > "$work/said" 2>&1 ||
     fail "the earlier version: $(tail -3 "$work/said")"
-  version=$(head -n 1 "$work/said" | grep -oE '[0-9]+\.[0-9]+\.[0-9]+')
+  version=$(head -n 1 "$work/said" | grep -oE '[0-9]+\.[0-9]+\.[0-9]+' | head -n 1)
 fi
 
 mkdir "$root/root/packages"
