@@ -213,11 +213,11 @@ void say_own_forces(const Scene& scene, const Simulation& simulation) {
   if (parts.empty() || simulation.topology().groups.images > 0) return;
   const EnergyCheck found = energy_check(simulation);
   if (found.error() < agrees)
-    fmt::print("forces with {}: they are the falls of the energy to {:.1g}\n", parts, found.error());
+    fmt::print("forces with {}: they follow from the energy to {:.1g}\n", parts, found.error());
   else
     fmt::print(
-        "note: With {} the forces are not the falls of the energy: along a random motion they give {:.6g} eV/nm, and "
-        "the energy {:.6g} eV/nm. Where the part has an energy, a sign or a factor is wrong.\n",
+        "note: With {} the forces do not follow from the energy: along a random motion they give {:.6g} eV/nm, and "
+        "the energy {:.6g} eV/nm. If this part has an energy, one of its signs or factors is wrong.\n",
         parts, found.by_forces, found.by_energy);
 }
 

@@ -1,4 +1,4 @@
-// Whether the forces of a scene are the falls of its energy, for whoever writes a law or a force term:
+// Whether the forces of a scene follow from its energy, for whoever writes a law or a force term:
 //
 //     E(x + h d) - E(x - h d) = -2 h F . d
 //

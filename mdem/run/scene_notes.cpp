@@ -47,10 +47,10 @@ void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::s
                                std::fabs(w.crossed_shallowest / integral.cross90_energy - 1)});
   if (off < 0.01) return;
   warnings.push_back(fmt::format(
-      "law = \"paper\" is up to {:.2g} % off for {}: tubes crossed at 90 degrees bind with {:.2f} to {:.2f} eV by "
-      "where along their elements they cross, and the surface integral gives {:.2f} eV; parallel ones with {:.3f} "
-      "eV/nm "
-      "at {:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" agrees with the integral.",
+      "law = \"paper\" is up to {:.2g} % off for {}. Tubes crossed at 90 degrees bind with {:.2f} to {:.2f} eV, "
+      "which depends on where along their elements they cross, and the surface integral gives {:.2f} eV. Parallel "
+      "tubes bind with {:.3f} eV/nm at {:.3f} nm, and the integral gives {:.3f} eV/nm at {:.3f} nm. law = \"line\" "
+      "agrees with the integral.",
       100 * off, set.name, w.crossed_shallowest, w.crossed_deepest, integral.cross90_energy, w.parallel, w.spacing,
       integral.pair_energy, integral.pair_spacing));
 }
@@ -186,8 +186,8 @@ void warn_of_tilted_rope(const Scene& scene, const Prepared& p, std::vector<std:
   const double tilt = std::atan2(sum.head<2>().norm(), std::fabs(sum.z())) / units::degree;
   if (!(sum.norm() > parallel * lengths) || !(tilt > least && tilt < most)) return;
   warnings.push_back(
-      fmt::format("The axis of the rope stands at {:.3g} degrees to z, and along and about z, not about the axis "
-                  "of the rope, {} acts. Turn the snapshot upright before it is read.",
+      fmt::format("The axis of the rope stands at {:.3g} degrees to z. {} acts along and about z, not along and "
+                  "about this axis. Turn the snapshot upright before it is read.",
                   tilt, driven));
 }
 
@@ -210,9 +210,9 @@ void warn_of_opening_slice(const Prepared& p, std::vector<std::string>& warnings
   const double angle = std::atan(rim * twist);
   if (angle > bears)
     warnings.push_back(
-        fmt::format("Tubes that end in a slice slide where it is twisted: at {:.3g} degrees at its surface it may "
-                    "open, grow longer by itself, or end since its strands slid beyond their images. Twist it to 15 "
-                    "degrees, take more periodic.images, or leave tube_length_nm away.",
+        fmt::format("Tubes with ends inside of a slice slide when the slice is twisted: at {:.3g} degrees at its "
+                    "surface it may open, grow longer by itself, or end the run because strands slide beyond their "
+                    "images. Twist it to 15 degrees, take more periodic.images, or leave tube_length_nm away.",
                     angle / units::degree));
 }
 

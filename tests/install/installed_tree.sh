@@ -119,7 +119,7 @@ SCENE
 own_parts/my-ropewalk help wind | grep -q 'growth_nN_per_nm' || fail "the load of one's own has no help"
 own_parts/my-ropewalk run four.toml --out four --quiet > said || fail "ropewalk with four parts of one's own: $(cat said)"
 own_parts/my-ropewalk check four.toml > said
-grep -q 'forces with contact law beads, drive trap: they are the falls of the energy' said || fail "check: $(cat said)"
+grep -q 'forces with contact law beads, drive trap: they follow from the energy' said || fail "check: $(cat said)"
 own_parts/my-ropewalk help trap | grep -q 'stiffness_nN_per_nm' || fail "the force term of one's own has no help"
 python3 - <<'SCRIPT' || fail "the trap, or the law of beads, is not that of its formula"
 import csv, math

@@ -501,7 +501,7 @@ TEST(Statics, MotionsThatNothingHoldsAreNamed) {
   Beam b(5);
   EXPECT_EQ(why(b.make()), "");
   b.loads.add(ForceLoad({4}, {0, 1, 0}));
-  EXPECT_THAT(why(b.make()), HasSubstr("moves the whole along y"));
+  EXPECT_THAT(why(b.make()), HasSubstr("moves the whole scene along y"));
   b.loads.add(FixLoad({0}));
   EXPECT_EQ(why(b.make()), "");
   Beam spun(5);

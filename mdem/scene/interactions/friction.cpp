@@ -178,7 +178,7 @@ const KeyTable<FrictionDrive>& friction_table() {
            "length"),
        Key::number(
            "end_strength_pN", {"pN", pN}, Bounds::non_negative(1e6), [](auto& d) -> auto& { return d.typed.end; },
-           standard(), "force along the tubes at each end of a tube beside another one"),
+           standard(), "force along the tubes, for each end of a tube that lies beside another tube"),
        Key::number(
            "elastic_slip_nm", unit::nm, Bounds::range(1e-3, 1),
            [](auto& d) -> auto& { return d.typed.elastic_slip; }, standard(),

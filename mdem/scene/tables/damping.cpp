@@ -57,7 +57,8 @@ const KeyTable<Damping>& damping_table() {
        Key::number(
            "bond_damping_per_ps", {"1/ps", 1}, Bounds::non_negative(1e4),
            [](auto& d) -> auto& { return d.bond.rate; }, standard(),
-           "against relative motion of bonded elements of the set's own length; others are as viscous per length"),
+           "damps relative motion of bonded elements of the set's own length; elements of other lengths have the "
+           "same viscosity per length"),
        Key::number("pfc_local", unit::none, Bounds::range(0, 1), &Damping::local, standard(),
                    "PFC3D's local damping, 0 to 1; breaks momentum conservation")},
       complete,

@@ -25,7 +25,8 @@ const std::array<Text, limit_count>& texts() {
       {otherwise("2.3", "where a tube of this diameter collapses"), "pressure of the contacts on a tube"},
       {standard("0.05"), "error of the energy balance over the energy that was converted"},
       {standard("0.25"),
-       "kinetic energy of a cold rope, over the energy of twist that it has under the whole moment in the end"},
+       "kinetic energy of a cold rope, divided by the energy of twist that it has in the end, under the whole "
+       "moment"},
   }};
   return all;
 }

@@ -22,7 +22,7 @@ const KeyTable<StartOptions>& start_table() {
        Key::number("twist_deg_per_nm", {"deg/nm", units::degree}, Bounds::range(-30, 30), &StartOptions::turn,
                    standard(), "winding of the rope about its axis at the start, for tubes side by side"),
        Key::number("wave_nm", unit::nm, Bounds::range(0, 100), &StartOptions::wave, standard(),
-                   "amplitude of a sine wave along x in which all tubes side by side begin"),
+                   "all tubes side by side begin as one sine wave, displaced in x by this amplitude"),
        Key::integer("half_waves", 1, 1000, &StartOptions::half_waves, standard(),
                     "number of half waves of wave_nm, from end to end")},
       {}};

@@ -274,7 +274,8 @@ void AllowedMotions::find_neutral(const VectorXd& internal) {
     if ((free - u).cwiseAbs().maxCoeff() > unmoved * u.cwiseAbs().maxCoeff()) continue;
     if ((load_forces(loads_, there) - expected).cwiseAbs().maxCoeff() > unmoved * size) continue;
     if (std::fabs(u.dot(internal)) > 1e-6 * sizes + 1e-9) continue;
-    Whole whole{u, u, std::string(k < 3 ? "moves the whole along " : "turns the whole about ") + axes[k % 3]};
+    Whole whole{u, u,
+                std::string(k < 3 ? "moves the whole scene along " : "turns the whole scene about ") + axes[k % 3]};
     without_spins(whole.motion, true);
     const double before = u.dot(mass_.cwiseProduct(u));
     for (int pass = 0; pass < 2; ++pass)
