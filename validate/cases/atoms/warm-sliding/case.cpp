@@ -17,6 +17,7 @@
 #include "cases/common/twisted_rope.hpp"
 #include "core/checks.hpp"
 #include "friction/sliding.hpp"
+#include "model/contact/line_parameters.hpp"
 #include "scene/prepare.hpp"
 #include "scene/scene_toml.hpp"
 
@@ -85,7 +86,7 @@ std::string input_of(const Motion& m, const MdSession& session, const ParameterS
   const double turn = m.speed / middle.radius;  // rad/ps
   std::string text =
       header_commands("s s s", 0.1) + fmt::format("read_data {}.data\n", m.unlike ? "unlike" : "like");
-  text += rope_pairs(session.potential(), middle.line->universal) + rope_groups(atoms);
+  text += rope_pairs(session.potential(), middle.law<LineParameters>()->universal) + rope_groups(atoms);
   text += fmt::format(
       "group centre type 1\ngroup around subtract all centre\n"
       "displace_atoms centre move 0 0 {} units box\n"
