@@ -53,7 +53,7 @@ struct AtomisticRow {
   double energy = 0;    // eV, of the whole cell, against the relaxed straight tube
   double residual = 0;  // eV, of the fit
   double radius = 0;    // nm, mean distance from the axis (straight cells)
-  int line = 0;         // of the file that it was read from
+  int line = 0;         // line in the file that it was read from
 };
 
 // Limits beyond which the model no longer describes the tube.

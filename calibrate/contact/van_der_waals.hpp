@@ -43,8 +43,8 @@ struct Shell {
 // Two atoms per hexagon of graphene of lattice constant a.
 double graphene_density(double a);
 
-// By adaptive quadrature (GSL); relative accuracy of the quadrature 1e-7 of the well or better. R is the distance
-// of the axes; it must exceed r_i + r_j.
+// Adaptive quadrature (GSL) finds these to 1e-7 of the well or better. `distance` is that of the axes and must
+// exceed r_i + r_j.
 double parallel_energy(const AtomLaw& law, const Shell& i, const Shell& j, double distance);             // eV/nm
 double parallel_energy_derivative(const AtomLaw& law, const Shell& i, const Shell& j, double distance);  // eV/nm^2
 // The fourfold integral, without use of the line density. 0 < angle <= pi/2.

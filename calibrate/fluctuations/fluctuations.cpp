@@ -11,7 +11,7 @@ namespace ropewalk::calibrate {
 namespace {
 
 constexpr int windows_tried[] = {1, 2, 4, 8};
-constexpr long blocks = 16;  // of which the variance of a mean is taken
+constexpr long blocks = 16;  // number of blocks from which the variance of a mean is taken
 
 // Variances and the covariance of stretch and twist.
 enum Moment { ss, tt, st, xx, yy, moments };

@@ -75,7 +75,7 @@ FitModel stiffness_model(const std::string& path) {
                      "name the kind of each row");
   FitModel m;
   const bool straight = largest > 0, bent = bend > 0;
-  // In units of the largest energy of the window, so that all bounds are of the same size.
+  // Free terms are in units of the largest energy of the window, so that all bounds are of the same size.
   const auto free_term = [&](const char* name, bool used) { m.nuisance.push_back({name, 0, -5, 5, used}); };
   if (straight) {
     m.named.insert(m.named.end(), {{"EA", "bond.EA", "nN", 0},

@@ -61,7 +61,7 @@ void add_law(CLI::App& app, std::string& lj, double& cutoff);
 void catch_interrupts();
 int interrupted_by();
 
-// From "12,6". Throws InputError if the text is not a chirality, or if the tube cannot be calibrated.
+// Reads "12,6". Throws InputError if the text is not a chirality, or if the tube cannot be calibrated.
 Chirality parse_chirality(const std::string& text);
 AtomLaw parse_atom_law(const std::string& lj, double cutoff);
 

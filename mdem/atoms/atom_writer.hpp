@@ -13,7 +13,7 @@ namespace ropewalk {
 inline constexpr double angstrom = 0.1;  // nm: LAMMPS's metal units
 
 enum class AtomFormat { lammps_data, extended_xyz };
-// By the end of the name: .data, .xyz or .extxyz. Throws InputError.
+// The end of the name tells the format: .data, .xyz or .extxyz. Throws InputError.
 AtomFormat atom_format_of(const std::string& path);
 
 // Atoms `first` .. `last` of a file, from 1, are those of an element of a tube.

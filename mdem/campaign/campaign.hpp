@@ -37,7 +37,7 @@ bool is_run_of(const RunDirectory& dir, const std::string& text, const SweepPoin
 struct PointProgress {
   enum class Stage { waiting, begun, ended, failed };
   Stage stage = Stage::waiting;
-  std::string status;  // of the manifest; "waiting" where there is none
+  std::string status;  // status in the manifest; "waiting" where there is none
   std::string reason;
   double wall_seconds = 0;
 };
@@ -46,10 +46,10 @@ PointProgress progress_of(const RunDirectory& dir);
 // What a finished run gave against the [[expect]] tables of its scene; empty: it has none, or has not finished.
 std::vector<Judgement> judged(const RunDirectory& dir);
 
-// Makes the directory with its copies, and holds it: together with other processes, alone with `force`. Throws
-// InputError where it is not that of a campaign, where another process holds it alone, and where a point or a
-// shared start in it was run with another scene, parameter set, state file or time of its shared start, unless
-// `force` is set: these runs are then removed.
+// Makes the directory with its copies, and holds it: alone with `force`, otherwise together with other processes.
+// Throws InputError where it is not that of a campaign, or where another process holds it alone. Does so too where
+// a point or a shared start in it was run with another scene, parameter set, state file or time of its shared
+// start, unless `force` is set: these runs are then removed.
 [[nodiscard]] DirectoryLock create_campaign(const CampaignDirectory& dir, const Sweep& sweep,
                                             const std::vector<SweepPoint>& points, bool force);
 

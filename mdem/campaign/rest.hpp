@@ -55,7 +55,7 @@ struct RestVerdict {
   bool agree() const { return kind == Kind::rests; }
   std::string words;        // one or two sentences
   RestValue twist, beta;    // deg; nan: neither `rests` nor `creeps`
-  double further_time = 0;  // ps, by which `creeps` would rest
+  double further_time = 0;  // ps, time that a rope which `creeps` still needs to rest
 };
 RestVerdict rest_verdict(const std::array<RestSide, 2>& sides, double tolerance);
 const char* name_of(RestVerdict::Kind kind);

@@ -49,7 +49,7 @@ struct Sweep {
   std::string scene_path, scene_text;
   bool zip = false;
   int replicates = 0;                        // 0: the seed is not varied
-  bool common_noise = false;                 // of points that differ in more than the seed
+  bool common_noise = false;                 // points that differ in more than the seed share random numbers
   std::vector<SweepAxis> axes, branch_axes;  // in the order of the file; the seed is the last of `axes`
   double branch_at = 0;                      // ps; 0: nothing is shared
   std::optional<ThresholdQuestion> threshold;

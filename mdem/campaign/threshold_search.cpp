@@ -80,7 +80,7 @@ std::pair<std::size_t, std::size_t> ThresholdSearch::take(const std::string& pat
   // Where the table has the keys of this sweep, a trial can only be of a point with its values.
   struct Candidates {
     std::vector<std::size_t> points;
-    std::size_t last = 0;  // of these, the one that a row was found to be of
+    std::size_t last = 0;  // place in `points` of the one that the last row was found to belong to
   };
   const bool same_keys = table.keys == key_cells(sweep_, sweep_.keys());
   std::unordered_map<std::string, Candidates> by_values;

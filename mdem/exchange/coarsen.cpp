@@ -29,7 +29,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double farthest = 0.08;     // nm: an atom farther from its place has no site
-constexpr double emptiest = 0.5;      // of the sites of an element that must have an atom
+constexpr double emptiest = 0.5;      // least part of the sites of an element that must have an atom
 constexpr double most_misfits = 0.2;  // largest part of a tube's sites
 constexpr int fewest_elements = 2;
 constexpr int most_rounds_of_misfits = 3;

@@ -13,7 +13,7 @@ struct ChildOptions {
   std::string output;                // file for stdout and stderr, absolute or in the folder; empty: those of here
   std::vector<std::string> watched;  // files whose growth is a sign of life, beside the output
   double quiet_seconds = 120, max_seconds = 3600;
-  long long most_bytes = 256LL << 20;  // in any file that it writes, and in output and watched files together
+  long long most_bytes = 256LL << 20;  // limit for a file that it writes, and for output and watched files together
   std::function<bool()> interrupted;   // may be empty
 };
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::string said_directory;
 const char* added_directory = nullptr;  // there before any static variable
 
-// How to make a set that is named by its chirality, of which none is shipped; empty: no such name.
+// Tells how to make a set that is named by its chirality; empty: it is shipped, or the name has no chirality.
 std::string how_to_make(const std::string& name, const std::vector<std::string>& shipped) {
   std::smatch found;
   if (!std::regex_match(name, found, std::regex("cnt-([0-9]{1,3})-([0-9]{1,3})(-[a-z]*)?"))) return "";

@@ -50,7 +50,7 @@ class Draft {
   }
 
  private:
-  void take_permissions();  // of the file that it will replace; another program could not open it with all of them
+  void take_permissions();  // the old file's permissions; other programs cannot write a read-only draft
 
   std::string path_, name_;
   Descriptor file_;

@@ -22,7 +22,7 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* not_written = "cannot be written";
-constexpr const char* part = ".part-";  // of the name of a file that is being written
+constexpr const char* part = ".part-";  // part of the name of a file that is being written
 constexpr const char* standard_input = "/dev/stdin";
 constexpr std::size_t longest_stream = std::size_t{256} << 20;  // bytes of a file that is not a regular one
 

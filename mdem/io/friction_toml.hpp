@@ -22,7 +22,7 @@ namespace ropewalk {
 inline constexpr const char* friction_format = "ropewalk-friction-1";
 
 struct PairFriction {
-  std::string path, hash;  // of the file that it was read from
+  std::string path, hash;  // path and hash of the file that it was read from
   std::string name, potential;
   Chirality a, b;
   std::vector<Quantity> quantities;

@@ -9,7 +9,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double slack_stress = 0.1;  // part of the largest stress
-constexpr double at_rest = 0.5;       // part of the largest stress, and of the strain, by which a rope moves by itself
+constexpr double at_rest = 0.5;       // part of the largest stress or its strain: a rope at rest moves by less
 
 // Slope of the least squares line through the rows [from, to].
 double slope_of(const std::vector<LogRow>& log, std::size_t from, std::size_t to) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double still_there = 0.95;   // relative to the largest value
 constexpr double twisted_from = 0.01;  // nN nm
-constexpr double bent_share = 0.05;    // of the bending moment, above which the torque of a bent rope is no noise
+constexpr double bent_share = 0.05;    // part of the bending moment: a larger torque of a bent rope is no noise
 constexpr double bent_beside = 0.2;    // torque over the bending moment; and that over tension times radius
 constexpr double drawn_from = 1e-6;    // strain, from the start
 constexpr double drawn_again = 1e-3;   // strain, of a rope that was shorter before

@@ -43,7 +43,7 @@ struct RunResults {
 
   std::string first_limit;  // key of the limit that was passed first; empty: none was
   double first_limit_ps = none;
-  double first_limit_deg = none;  // rotation then, of a rope that is twisted
+  double first_limit_deg = none;  // rotation of a twisted rope at that time
   double torque_max = none;                              // nN nm: the largest absolute torque_of() of a row
   double torque_max_deg = none, torque_max_ps = none;    // rotation and time of that row
   bool torque_fell = false;                              // below 95 % of it by the end

@@ -253,7 +253,7 @@ void FixStates::widen_box(const std::vector<StateRecord>& records) {
   domain->set_local_box();
 }
 
-// The ranks are a grid of bricks as yet.
+// At this point LAMMPS still divides the box into a grid of bricks, one for each rank.
 std::vector<int> FixStates::owners(const std::vector<StateRecord>& records) const {
   std::array<std::vector<double>, 3> low;  // lower limits of the bricks along each axis
   for (std::size_t k = 0; k < 3; ++k) {

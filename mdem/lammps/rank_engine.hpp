@@ -125,7 +125,7 @@ class RankEngine {
   std::vector<Segment> moved_;
   std::vector<int> element_;     // element of each own atom
   std::vector<char> is_shared_;  // likewise
-  std::vector<Stretch> shared_;  // of those that are
+  std::vector<Stretch> shared_;  // runs of elements that are shared
   bool shared_known_ = false;
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there

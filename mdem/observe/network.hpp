@@ -39,8 +39,8 @@ class TubeClusters {
 
   std::array<double, 2> reach_;
   std::vector<std::size_t>
-      parent_;  // of each tube: another one of its cluster, in the end the one that stands for it
-  std::vector<Cluster> clusters_;  // of the tubes that stand for one
+      parent_;  // another tube of the cluster of each tube, in the end the one that stands for the cluster
+  std::vector<Cluster> clusters_;  // clusters of the tubes that stand for one
   int largest_ = 1;
   std::array<bool, 2> spans_{};
 };

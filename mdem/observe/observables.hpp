@@ -37,7 +37,7 @@ struct EnergyAccount {
   EndReadings ends;                          // means since the row before
 };
 
-// Of what was dissipated (eV), the part that numerical damping has taken: all but what force terms have lost.
+// The part of what was dissipated (eV) that numerical damping has taken: all but what force terms have lost.
 double lost_to_damping(const EnergyAccount& account);
 // The error of the integration: total energy less its first value and what has been supplied, eV.
 double energy_balance(const EnergyAccount& account);

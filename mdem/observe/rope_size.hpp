@@ -9,8 +9,8 @@
 
 namespace ropewalk {
 
-// Of a rope without load, along its tubes: strain and twist change none of it, and holes between tubes in line are
-// no part of it. Of a slice, one period.
+// The size of a rope without load, along its tubes. Strain and twist change none of it, and holes between tubes in
+// line are no part of it. A slice counts as one period.
 struct RopeSize {
   double mass = 0;             // eV ps^2/nm^2
   double mass_per_length = 0;  // eV ps^2/nm^3, of all strands, where tubes are: NaN without tubes

@@ -35,7 +35,7 @@ double curvature_aside(double aside, double length, double tension, double bend)
   return x > 0.01 ? 0.5 * aside * k * k / (x / std::tanh(x) - 1) : 6 * aside / (length * length);
 }
 
-// Curvature of a beam that has buckled in one wave, by the part of its length by which its ends have come nearer.
+// Curvature of a beam that has buckled in one wave. `shortened`: its ends came nearer by this part of its length.
 double curvature_buckled(double shortened, double length, bool upright) {
   return (upright ? 4 : 2) * units::pi / length * std::sqrt(shortened);
 }

@@ -27,7 +27,7 @@ namespace ropewalk {
 // Largest values, without their signs.
 struct Demands {
   double curvature = 0, twist = 0;  // 1/nm, rad/nm
-  double strain = 0, pressed = 0;  // of the bond that is drawn out farthest, and of the one that is pressed most
+  double strain = 0, pressed = 0;  // strain of the bond drawn out farthest, and of the one pressed most
   double pressure = 0;             // eV/nm^3, on the innermost tube
 };
 

@@ -14,7 +14,7 @@ struct SceneFeatures {
   double strain = 0;                // largest expected strain of a tube
   double pressure = 0;              // eV/nm^3, on the innermost tube
   double turn = 0;                  // rad/nm, by which loads and motions turn the rope as a whole from its start
-  Schedule course;                  // of the load or motion that takes longest to become whole
+  Schedule course;                  // schedule of the load or motion that takes longest to become whole
   double turned = 0, turning = 0;   // rad and rad/ps, prescribed to an end against the other
   // Whether both ends of some tube have a prescribed rotation, or a prescribed distance.
   bool turned_between = false, length_held = false;

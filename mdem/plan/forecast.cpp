@@ -38,7 +38,7 @@ std::string gentle_ramp(const Prepared& p, double part) {
                      load->largest() / rate);
 }
 
-// By length: 1 where a strand is one tube.
+// The part of its strand's length that a tube has: 1 where a strand is one tube.
 double part_of_strand(const Topology& topology, int tube) {
   const auto [first, last] = topology.strand_of(tube);
   int elements = 0;

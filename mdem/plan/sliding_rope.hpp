@@ -45,8 +45,8 @@ struct SlidingRope {
   double growth(double moment, double winding) const;
   // Turns of the helix that this motion makes, as the observable `windings` counts them; 0: none grows.
   double windings(double moment, double winding) const;
-  // The sum of the growth over time, of a moment that rises from zero at `rate` (eV/ps; 0: at once) and is then
-  // held for `hold` (ps): the logarithm of amplitude over first amplitude.
+  // The integral of growth() over time, which is the logarithm of amplitude over first amplitude. The moment rises
+  // from zero at `rate` (eV/ps; 0: at once) and is then held for `hold` (ps).
   double gain(double moment, double winding, double rate, double hold) const;
   // The moment (eV) at which gain() is `wanted`.
   double moment_of_gain(double wanted, double winding, double rate, double hold) const;

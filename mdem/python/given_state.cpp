@@ -12,7 +12,7 @@
 namespace ropewalk::python {
 namespace {
 
-constexpr double norm_slack = 1e-3;  // of a quaternion, as state files have it
+constexpr double norm_slack = 1e-3;  // largest error of a quaternion's norm, as in state files
 
 }  // namespace
 

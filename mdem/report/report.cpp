@@ -668,7 +668,7 @@ std::string log_part(const ReportInput& in, const std::vector<ReportSection>& se
                                                         ? "The log has no rows, so there are no charts."
                                                         : "The log has one row, so there are no charts over time.");
   const auto panel = [&](const Panel& p) { return log_figure(in, p, figures); };
-  // In statements of their own, since figures are numbered and C++ does not fix the order of evaluation of
+  // These are statements of their own, since figures are numbered and C++ does not fix the order of evaluation of
   // arguments.
   std::string html = loading_part(in, figures) + heading("Energies");
   const std::string bonds = panel(bond_energies()), others = panel(other_energies(in));

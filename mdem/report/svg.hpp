@@ -116,8 +116,8 @@ struct RopeCamera {
 // The rope lies across the page, and the plane of its largest deflection in the page.
 RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, double widest = 1040,
                        double highest = 300);
-// From a side of one's choice: `towards` points to who looks. The rope lies across the page unless it is seen from
-// its end.
+// A camera at a side of one's choice: `towards` points to who looks. The rope lies across the page unless it is
+// seen from its end.
 RopeCamera rope_camera(const std::vector<RopeView>& views, double tube_radius, const Vector3& towards,
                        double widest, double highest);
 

@@ -5,8 +5,8 @@
 
 namespace ropewalk {
 
-// From the log of one run; the horizontal axis is that of the row with the largest torque. Throws
-// std::invalid_argument where nothing twists in the log.
+// A torsion test as the log of one run has it; the horizontal axis is that of the row with the largest torque.
+// Throws std::invalid_argument where nothing twists in the log.
 LoadTest torsion_test(const std::vector<LogRow>& log, const RunResults& results);
 const LoadTestKind& torsion_kind();
 

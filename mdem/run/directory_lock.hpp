@@ -27,7 +27,7 @@ class DirectoryLock {
   ~DirectoryLock();
 
  private:
-  std::string path_;  // of the file that is removed at the end; empty: none
+  std::string path_;  // path of the file that is removed at the end; empty: none
   Descriptor file_;
 };
 

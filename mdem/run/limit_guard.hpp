@@ -1,4 +1,4 @@
-// The guard of a run's limits: it says which are passed, keeps limits.json, and may end for one.
+// The guard of a run's limits: it says which are passed, keeps limits.json, and may end the run at one.
 #pragma once
 
 #include <set>

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* without_energy = " (no energy)";
 
-// Of each force in words, whether it has an energy.
+// Whether each force in `words` has an energy.
 std::vector<bool> energies_of(const std::string& words) {
   std::vector<bool> out;
   for (std::size_t begin = 0; begin < words.size();) {

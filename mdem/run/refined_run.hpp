@@ -10,7 +10,7 @@ namespace ropewalk {
 // the record of the splitting, which `fine` has in its limits.
 RefinementRecord go_on_finer(const RunParts& coarse, RunParts& fine);
 
-// In a line. `to`: where it goes on.
+// Says in a line how the run was refined. `to`: where it goes on.
 std::string refinement_words(const RefinementRecord& split, const RunDirectory& to);
 
 }  // namespace ropewalk

@@ -24,7 +24,7 @@ StopReason RelaxationLoop::go() {
     newton_.emplace(simulation, NewtonOptions{options.solver == RunOptions::Solver::automatic});
   Relaxed end = relax(most_ + 1, [this](long step) { return goes_on_after(step); });
   run_.listener.end_loop();
-  // In the middle of the relaxation, from where `resume` goes on.
+  // The relaxation stops midway, and `resume` goes on from there.
   if (stop_ == StopReason::asked || stop_ == StopReason::wall_time) return run_.stop(stop_);
   if (stop_ != StopReason::none) run_.keep_for(stop_);
   if (stop_ == StopReason::complete) end = relax(most_, [](long) { return true; });

@@ -28,7 +28,7 @@ struct RunResult {
   RunEnd end = RunEnd::finished;
   RunDirectory directory;
   std::string reason;                // why it ended, in words
-  std::string remedy;                // of a relaxation that resuming does not bring to rest
+  std::string remedy;                // what helps a relaxation that resuming does not bring to rest
   std::string passed;                // limits, in words
   std::string beyond_since;          // since when and by which limit, a sentence; empty: within all limits
   std::string worst;                 // how far it was passed, in words
@@ -37,7 +37,7 @@ struct RunResult {
   std::string damping;               // its part of the lost energy, in words
   std::string network;               // of a film at its end, in words
   std::vector<Judgement> expected;   // verdicts on the [[expect]] tables
-  std::string missing;               // files
+  std::string missing;               // files that could not be written
   std::int64_t steps = 0;
   double time_ps = 0, wall_seconds = 0;
   bool relaxes = false;

@@ -15,8 +15,8 @@ struct Expectation {
   bool of_other_scene = false;  // the scene has another hash: it is not judged
 };
 
-// Of all that a scene asks for, but its name, its expectations, and the frames and checkpoints of its run.
-// Comments, the order of keys and the way in which numbers are written do not count.
+// The hash of all that a scene asks for, but its name, its expectations, and the frames and checkpoints of its
+// run. Comments, the order of keys and the way in which numbers are written do not count.
 std::string what_is_run_hash(const std::string& scene_text);
 
 }  // namespace ropewalk

@@ -32,7 +32,7 @@ struct LammpsStart {
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
   std::vector<std::string> parameters;              // files, of each tube type
-  std::map<std::string, std::string> sums;          // of the files that LAMMPS reads, by name; empty: an older export
+  std::map<std::string, std::string> sums;          // sum of each LAMMPS file, by name; empty: an older export
 };
 
 struct LammpsDirectory {

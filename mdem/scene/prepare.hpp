@@ -1,4 +1,4 @@
-// From a scene to what the simulator takes: interaction, loads, state and time step.
+// Makes what the simulator takes from a scene: interaction, loads, state and time step.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ std::vector<SceneKey> scene_keys();
 
 // A table of all of them for the program's help.
 std::string scene_key_help();
-// Of all keys of this name; empty: there are none.
+// The help of all keys of this name; empty: there are none.
 std::string scene_key_help(const std::string& key);
 // A line or two for each key of a table.
 std::string key_lines(const SceneTable& table);

@@ -89,7 +89,7 @@ TomlTable with_errors(TomlTable table) {
   return table;
 }
 
-// In an order in which each finds what it needs in the scene.
+// Reads the tables in an order in which each finds what it needs in the scene.
 void read_tables(const TomlTable& top, Scene& scene) {
   read_source(top, scene);
   scene.start = start_table().read(top.table("start"), scene);

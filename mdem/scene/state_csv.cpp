@@ -41,7 +41,7 @@ const std::string whole_header = column_names(columns);
 const std::string header = whole_header.substr(0, whole_header.find(",vx"));
 constexpr double farthest = 1e7;                          // nm
 constexpr double norm_slack = 1e-3;                       // allowed deviation of a quaternion's norm from 1
-constexpr double norm_rounding = 1e-14;                   // of its square, in which it stays as it is
+constexpr double norm_rounding = 1e-14;                   // deviation of its square up to which it stays as it is
 constexpr double shortest_bond = 0.1, longest_bond = 10;  // element lengths
 // Bounds of a tube's median bond over the element length. No strain that a tube bears reaches them, and elements of
 // half or twice the length lie beyond them.

@@ -109,7 +109,7 @@ struct ChartScene {
   bool relaxes = true;
   // Whether the scene's tubes are (10,10): the published model and its law describe no others.
   bool published = true;
-  // Whether its bonds may be as soft as the set's.
+  // Whether the chart shows models with bonds as soft as the set's.
   bool soft_bonds = true;
 };
 

@@ -49,7 +49,7 @@ struct Limit {
   // The response of `run` there: it does not start, it ends with the reason, it warns, or it does nothing.
   enum class Guard { refused, stopped, told, none };
   std::string method;  // "time step of a single tube"
-  double found = 0;    // place found by bisection on the method itself
+  double found = 0;    // limit that bisection on the method itself has found
   double theory = 0;
   std::string unit;
   Guard guard = Guard::none;
@@ -111,7 +111,7 @@ struct CaseTube {
   std::string source;  // "cnt-10-10-tersoff (hash ...)", for CaseResult::sources
 };
 
-// The means of a case.
+// What the runner gives to a case.
 struct CaseContext {
   // The sets that the case runs with: Case::sets or, in the place of all of them, the one given with --parameters.
   std::vector<ParameterSet> sets;
@@ -165,7 +165,7 @@ struct Case {
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;
-  // From case.md. Texts may contain {tube}, which stands for the names of the tubes: "(5,5) and (10,10)". Formulas
+  // The following stand in case.md. Texts may contain {tube}, the names of the tubes: "(5,5) and (10,10)". Formulas
   // stand between backquotes in these texts, in notes and in captions. report/formula.hpp has their grammar.
   std::string title;
   std::string why;         // why it matters in a rope
@@ -182,7 +182,7 @@ struct Case {
   // The test of every case makes sure that it holds, and that these turn it red. A case that holds under every
   // wrong parameter tests nothing: each names at least one that it sees.
   std::vector<Red> turns_red;
-  std::vector<Fault> stays_green;  // of quantities that the case does not depend on
+  std::vector<Fault> stays_green;  // faults in quantities that the case does not depend on
   // Checks that miss with the right parameters, and by how much; the remarks say why. A miss that changes is a
   // miss.
   struct KnownMiss {

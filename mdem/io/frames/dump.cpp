@@ -123,7 +123,7 @@ struct DumpReader::Impl {
   std::ifstream file;
   std::string line;
   int number = 0;
-  std::vector<Begin> begins;  // of frames; empty until they are looked for
+  std::vector<Begin> begins;  // where frames begin; empty until they are looked for
   Begin end{0, 0};
 
   InputError error(const std::string& column, const std::string& what, const char* remedy) const {

@@ -81,7 +81,7 @@ void GsdReader::read_index() {
     if (e.frame < frames || e.frame > frames + (used > 0 ? 1 : 0)) fail("", "its index is out of order");
     if (e.frame > frames) frame_begin_.push_back(used);
     frames = e.frame;
-    if (!lies_within(e, size_)) break;  // of a frame that was not written to its end
+    if (!lies_within(e, size_)) break;  // the frame was not written to its end
   }
   const bool whole = used == entries_.size() || entries_[used].location == 0;
   if (whole && used > 0) frame_begin_.push_back(used);

@@ -35,7 +35,7 @@ constexpr int by_program = 255;  // above all numbers of errors
 
 void draw(const std::vector<RopeView>& views, const MovieStage& stage, const std::string& folder,
           const std::string& movie) {
-  int failed = 0;  // of the first picture that cannot be made: errno, or `by_program`
+  int failed = 0;  // error of the first picture that cannot be made: errno, or `by_program`
   std::vector<ProcessTask> tasks;
   for (std::size_t k = 0; k < views.size(); ++k)
     tasks.push_back({[&, k] {

@@ -388,7 +388,7 @@ constexpr double largest_value = 1e6;
 
 std::string example_of(const Course& d) { return fmt::format("{{ {} = 1, {} = 0.01 }}", d.key, d.rate_key); }
 
-// From 0 at the start to each value in turn, at this speed; a value twice would be a hold without a length.
+// Goes from 0 at the start to each value in turn, at this speed; a value twice would be a hold without a length.
 std::vector<Schedule::Point> at_rate(const TomlTable& t, const Course& d, const std::vector<double>& values) {
   const double rate = t.number(d.rate_key, Bounds::positive(largest_value));
   std::vector<Schedule::Point> points{{0, 0}};

@@ -69,7 +69,7 @@ void check_slice(const TomlTable& t, const Scene&, PeriodicLoad& load) {
                 "begin with 0: it counts from the length at that time on");
 }
 
-constexpr double slack = 0.5;  // of an element, at whose distance the contact is weak
+constexpr double slack = 0.5;  // part of an element; at so much distance the contact is weak
 
 // Images that a slice needs at each end, for a contact that reaches so many elements far: shortened, it has more of
 // them within reach.

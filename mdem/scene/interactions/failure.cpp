@@ -179,7 +179,7 @@ class TubeFailure : public ForceTerm {
   bool ends_tube(int element) const {
     return element + 1 == scene_.tube_begin[static_cast<std::size_t>(scene_.tube_of(element)) + 1];
   }
-  // By a hair before BondSum::slipping, so that no run ends for a bond that breaks.
+  // A bond slips a hair before BondSum::slipping, so that no run ends for a bond that breaks.
   static bool slips(const Quaternion& from, const Quaternion& to) {
     const Quaternion turn = from.conjugate() * to;
     return turn.z() * turn.z() >= (1 - 1e-9) * turn.w() * turn.w();
@@ -223,7 +223,7 @@ class TubeFailure : public ForceTerm {
     const Vector3 d = state.position[i + 1] - state.position[i];
     const std::vector<int> bonds = with_images(element);
     for (const int e : bonds) broken_[static_cast<std::size_t>(e)] = 1;
-    // In the order of the elements, as a memory comes back.
+    // The bonds are kept in the order of the elements, as a memory comes back.
     const int in_scene = number_in_scene(here_, element);
     all_.insert(std::upper_bound(all_.begin(), all_.end(), in_scene), in_scene);
     tell(in_scene, state.time, state.position[i] + 0.5 * d);

@@ -163,7 +163,7 @@ Helices touching(const PliesSource& plies, double spacing, double length) {
     h.radius = straight_radius(plies.ropes, rim, spacing, h.facing);
     return h;
   }
-  // From where they are apart to the first touch.
+  // The search goes from where the ropes are apart to the first touch.
   double farthest = 0;
   for (const Fibre& f : rim) farthest = std::max(farthest, std::hypot(f.x, f.y));
   const double step = 0.05 * spacing;
@@ -293,7 +293,7 @@ void PliesSource::place(const Scene& scene, double spacing_of_tubes, Random&, To
   std::size_t first = 0;
   for (int k = 0; k < ropes; ++k)
     for (const Fibre& f : fibres_of(*this, spacing_of_tubes)) {
-      // From the middle on to both ends.
+      // The elements follow from the middle on to both ends.
       at[middle] = elements % 2 == 1 ? 0 : h.after(k, f, 0, 0.5 * a);
       for (std::size_t e = middle + 1; e < at.size(); ++e) at[e] = h.after(k, f, at[e - 1], a);
       for (std::size_t e = middle; e-- > 0;) at[e] = h.after(k, f, at[e + 1], -a);

@@ -60,7 +60,7 @@ class Device {
   }
 };
 
-// By name:
+// The name chooses the device:
 //   gpu           the first GPU with doubles that OpenCL offers; never another kind of processor
 //   opencl:TEXT   the first device of any kind with TEXT in the name of its platform or in its own
 //   c++           this processor, with the threads of OpenMP

@@ -120,7 +120,7 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::size_t>&
   return out;
 }
 
-// In the order in which they act. Copies share the loads, which never change.
+// Loads and constraints in the order in which they act. Copies share the loads, which never change.
 class LoadsAndConstraints {
  public:
   void add(std::shared_ptr<const Load> load);

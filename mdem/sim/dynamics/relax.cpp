@@ -191,7 +191,7 @@ double Simulation::above_minimum(double enough, long most) const {
   double power = left.dot(free), above = 0;
   const double first = power;
   std::vector<double> sums{0};
-  long fewest = 30;  // an iteration reaches the next element of a tube
+  long fewest = 30;  // each iteration carries forces one element farther along a tube
   for (int t = 0; t < topology_.tubes(); ++t) fewest = std::max(fewest, 3L * topology_.length_of(t));
   for (long k = 1; k <= most + fewest && power > 0; ++k) {
     const Motion resistance = stiffness.times(along);
@@ -222,7 +222,7 @@ double Simulation::above_minimum(double enough, long most) const {
 // (2001), DOI 10.1137/S1064827500366124.
 Simulation::Motion Simulation::Stiffness::softest_mode(Motion x, long most) {
   constexpr long at_once = 25;     // iterations between two looks at lambda
-  constexpr double change = 0.01;  // of lambda, of one look to the next, that ends the search
+  constexpr double change = 0.01;  // part of lambda: a smaller fall from look to look ends the search
   const auto mass_product = [&](const Motion& a, const Motion& b) {
     double sum = 0;
     for_elements(s_.topology_, [&](const TubeType& type, std::size_t i) {
@@ -424,10 +424,10 @@ void Simulation::rest_after(const Relaxed& end) {
 Relaxed Simulation::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
   sync_to_host();
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
-  constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
+  constexpr double least_part = 1e-3;  // this part of the contact energy stands for that of bonds that hardly bear
   constexpr double no_force = 1e-2;    // part of the goal: a state with less force that is no minimum is a saddle
   constexpr long least_iterations = 300;
-  constexpr double least_fall = 1e-4;        // of the energy of bonds and contact, that is followed
+  constexpr double least_fall = 1e-4;        // part of the energy of bonds and contact: less fall is not followed
   constexpr std::int64_t most_saddles = 30;  // couples of fixed direction have no potential: they may pump for ever
   Relaxation& r = relaxation_;
   if (!(r.goal == goal)) end_relaxation();

@@ -98,8 +98,8 @@ class Simulation {
   // From now on these loads and constraints act. Those that set velocities do so from the next kick on, and their
   // work there counts. The gauges stay on their elements.
   void use_loads(LoadsAndConstraints loads);
-  // From the next step on; none: no bath. Its heat so far stays in the account. Its internal variables keep their
-  // values where the new thermostat has as many as the old one, as where the same one gets another temperature.
+  // The thermostat acts from the next step on; none: no bath. Its heat so far stays in the account. Its internal
+  // variables keep their values where the new one has as many as the old, as where only the temperature changes.
   void use_thermostat(std::shared_ptr<const Thermostat> thermostat);
   // A device moves the elements that no load acts on, from the next step on. open_device() knows the names of
   // devices. The simulation itself still computes the energies, when a caller asks for them. Throws
@@ -227,7 +227,7 @@ class Simulation {
   // A copy of a simulation has no device. Copying is an error while the device has a newer state.
   struct OwnDevice {
     std::shared_ptr<DeviceStepper> stepper;  // its own
-    bool device_is_current = false;          // from where it is, with the loads and gauges of now
+    bool device_is_current = false;          // the device goes on from its state, with the loads and gauges of now
     bool host_is_stale = false;              // its state is newer than the one here
     bool energies_missing = false;           // those of its state are asked for and not computed yet
     std::vector<Segment> hosted;             // what this processor moves

@@ -30,7 +30,7 @@ struct TimeStepLimit {
 // `spacing` of the tubes in nm; 0: a single tube.
 TimeStepLimit time_step_limit(const Topology& topology, const Interaction& interaction, double spacing);
 
-// By how much positions are hotter than velocities, relative, in a scene with heat. A harmonic mode w in velocity
+// How much hotter positions are than velocities, relative, in a scene with heat. A harmonic mode w in velocity
 // Verlet with the step h keeps v^2/2 + w^2 x^2/2 (1 - (w h)^2/4), and BAOAB keeps the same ratio, so that
 //   w^2 <x^2>/<v^2> = 1/(1 - (w h)^2/4).
 // The mean over all waves, of the stiffest mode of each and of the tube type with the largest: stretch, shear, bend

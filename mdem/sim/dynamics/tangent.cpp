@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::VectorXd;
 using Triplets = std::vector<Eigen::Triplet<double>>;
-using Graph = std::vector<std::vector<int>>;  // of each element, all that act on it, and itself; in rising order
+using Graph = std::vector<std::vector<int>>;  // what acts on each element, and itself; in rising order
 
 constexpr double speed_step = 1e-3;  // nm/ps: forces of viscosities are straight in the velocities
 
@@ -69,7 +69,7 @@ Graph who_acts_on_whom(const Topology& topology, const NeighbourList& list, bool
 // Groups of elements no two of which act on a common one.
 std::vector<std::vector<int>> groups_of(const Graph& graph) {
   std::vector<std::vector<int>> groups;
-  std::vector<int> colour(graph.size(), -1), used_by;  // of each colour, the last element that must not have it
+  std::vector<int> colour(graph.size(), -1), used_by;  // last element that must not have each colour
   for (std::size_t i = 0; i < graph.size(); ++i) {
     for (const int j : graph[i])
       for (const int k : graph[static_cast<std::size_t>(j)])

@@ -40,7 +40,7 @@ struct ThermostatKind {
 };
 const std::vector<ThermostatKind>& thermostat_kinds();
 
-// By options.method, which is one of thermostat_kinds().
+// Makes the thermostat that options.method names: one of thermostat_kinds().
 std::shared_ptr<const Thermostat> make_thermostat(const ThermostatOptions& options);
 
 }  // namespace ropewalk

@@ -33,7 +33,7 @@ void kick_with_loads(System& system, double dt) {
   system.add_work_of_loads(0.5 * dt);
 }
 
-// From the forces of the last step to where new ones are needed.
+// Goes from the forces of the last step to the positions at which new ones are needed.
 template <class System>
 void begin_step(System& system, double dt, bool thermostat) {
   kick_with_loads(system, 0.5 * dt);

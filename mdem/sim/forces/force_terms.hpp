@@ -46,8 +46,8 @@ class ForceTerms : private PairWork {
 
   // Prepares the terms for a list that is new to them.
   void prepare(const Topology& topology, const NeighbourList& list, const State& state, bool again = false);
-  // In the order of one evaluation. advance() returns the energy that the terms have lost, eV. `passed`: since the
-  // last evaluation, ps; none where this one is not of the way.
+  // One evaluation calls these in turn. advance() returns the energy that the terms have lost, eV. `passed`:
+  // time since the last evaluation, ps; none where this one is not of the way.
   void begin(const State& state, int parts);
   double advance(double dt, const State& state);
   void add(int part, const Segment& of, const ForceRows& out);
@@ -99,7 +99,7 @@ class ForceTerms : private PairWork {
   std::vector<TermEvent> earlier_;                        // events of before the last set_memory()
   const Processes* others_ = nullptr;
   const State* state_ = nullptr;  // state of the evaluation
-  long stamp_ = 0;                // of the list that they are prepared for
+  long stamp_ = 0;                // stamp of the list that they are prepared for
   bool in_kick_ = false, news_ = false;
 };
 

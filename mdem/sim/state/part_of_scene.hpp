@@ -13,7 +13,7 @@ Topology part_of_scene(const Topology& scene, std::vector<int> number, std::vect
 // The motion of these elements.
 State part_of_state(const State& scene, const std::vector<int>& number);
 
-// Of an element of a process its number in the scene, and back; -1: the process has no such element.
+// The number in the scene of a process's element, and back; -1: the process has no such element.
 inline int number_in_scene(const Topology& here, int place) {
   return here.part ? here.part->number[static_cast<std::size_t>(place)] : place;
 }

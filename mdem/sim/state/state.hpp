@@ -111,8 +111,8 @@ struct TubeType {
 struct PartOfScene {
   std::vector<char> own;     // whether each element belongs to this part
   std::vector<int> number;   // number of each element in the scene
-  std::vector<int> row_end;  // of each piece, the number behind the last element of its tube in the scene; where
-                             // ends meet (TubeGroups::ends_meet), of its strand
+  std::vector<int> row_end;  // number behind the last element of each piece's tube in the scene, or of its strand
+                             // where ends meet (TubeGroups::ends_meet)
 };
 
 // What the tubes of a scene form together. The mass, length and section of a rope follow from it
@@ -121,9 +121,9 @@ struct TubeGroups {
   // A strand is a row of tubes that follow one another in line, as in a rope of finite tubes: the first tube of
   // each strand, and the number of tubes. Empty: each tube is a strand.
   std::vector<int> strand_begin;
-  double strand_holes = 0;  // nm, between the tubes of a strand at the start: their sum, of the strand with most
-  // Ends of tubes that follow one another in a strand have a contact of their own (forces/terms/tube_ends.hpp):
-  // near them elements of both tubes do not touch each other otherwise, like those of one tube.
+  double strand_holes = 0;  // nm, sum of the holes between a strand's tubes at the start, in the strand with most
+  // Ends of tubes that follow one another in a strand have a contact of their own (forces/terms/tube_ends.hpp).
+  // Elements near such ends do not touch one another otherwise, just as neighbours in one tube do not.
   bool ends_meet = false;
   // A slice of an endless rope: so many elements at each end of a strand are images of the elements one period away
   // (scene/ends/periodic.hpp). All strands have as many elements. 0: no slice.
@@ -207,7 +207,7 @@ struct State {
   Vec3Array angular_velocity;   // rad/ps, space frame
   double time = 0;              // ps
   std::int64_t step = 0;
-  int part = 0;  // of a step that is divided, from 0
+  int part = 0;  // number of the part of a step that is divided, from 0
 
   explicit State(std::size_t n = 0) : position(n), orientation(n), velocity(n), angular_velocity(n) {}
   std::size_t size() const { return position.size(); }

@@ -48,7 +48,7 @@ class AllowedMotions {
   void project_force(Eigen::VectorXd& f) const;
   // Adds G x; `borne`: r.
   void add_constraint_stiffness(const Eigen::VectorXd& borne, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-  // Whether they keep momentum, as those do that act on different elements.
+  // Whether the constraints keep momentum. Those that act on different elements do.
   bool keeps_momentum() const { return keeps_momentum_; }
   // Whether P moves with the state.
   bool turns() const { return turns_; }

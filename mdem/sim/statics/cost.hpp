@@ -7,10 +7,10 @@
 namespace ropewalk {
 
 struct StaticsCost {
-  double first_seconds = 0;      // from a start that does not rest
+  double first_seconds = 0;      // time of the first state, from a start that does not rest
   double next_seconds = 0;       // time of the next state along a schedule
-  double stability_seconds = 0;  // of each; 0: its modes would take too long
-  double bytes = 0;              // of the tangent, and of the simulations that a step keeps
+  double stability_seconds = 0;  // time of the verdict on each state; 0: its modes would take too long
+  double bytes = 0;              // memory of the tangent, and of the simulations that a step keeps
   double decomposition_bytes = 0;
 };
 // Throws std::runtime_error for a force term without a tangent.

@@ -347,7 +347,7 @@ Statics NewtonStatics::follow(double until, const RelaxGoal& goal, const std::fu
 
 Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::function<bool(long)>& progress) {
   ROPEWALK_EXPECTS(goal.force > 0 && goal.energy > 0 && max_steps >= 0);
-  constexpr double least_part = 1e-3;  // of the contact's energy, which stands for that of bonds that hardly bear
+  constexpr double least_part = 1e-3;  // this part of the contact energy stands for that of bonds that hardly bear
   NewtonPace* pace = &s_.relaxation_with(goal);
   out_ = {};
   const bool by_fire = options_.fire && !is_slice();

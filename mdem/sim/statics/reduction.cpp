@@ -173,7 +173,7 @@ class Making {
   const AllowedMotions& allowed_;
   Triplets motions_, forces_;
   std::vector<double> mass_;
-  std::vector<Index> own_;  // of each coordinate: the unknown that it is, or -1
+  std::vector<Index> own_;  // the unknown that each coordinate is, or -1
   std::vector<std::pair<Index, VectorXd>> tied_columns_;
 };
 

@@ -53,7 +53,7 @@ void halve(const std::vector<Vector3>& place, std::vector<int>::iterator begin, 
   halve(place, middle, end, parts, part);
 }
 
-// By the places of the strands in the middle section. A thin rope stays whole.
+// Cuts the rope by the places of its strands in the middle section. A thin rope stays whole.
 void cut_into_parts(const Topology& topology, const State& state, Sections& sections) {
   constexpr std::size_t thin = 19;
   std::vector<int> strand_of(state.size());

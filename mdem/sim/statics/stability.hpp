@@ -33,8 +33,8 @@ struct StabilityVerdict {
 
   std::string words() const;  // a clause
 };
-// By the rates of the modes where these cost little. Else, where forces have a potential, by the search of Newton's
-// method for a motion of negative curvature. Pivots or quotients of the tangent do not tell under couples.
+// Judges by the rates of the modes where these cost little. Else, where forces have a potential, Newton's method
+// looks for a motion of negative curvature. Pivots or quotients of the tangent do not tell under couples.
 StabilityVerdict judge_stability(const Simulation& simulation, const Statics& end);
 
 }  // namespace ropewalk

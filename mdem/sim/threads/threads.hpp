@@ -18,7 +18,7 @@ inline int threads_in_use() {
   return std::min(threads, most_threads);
 }
 
-// From now on; 0 leaves the number unchanged.
+// Sets the number from now on; 0 leaves it unchanged.
 inline void use_threads(int threads) {
   if (threads > 0) omp_set_num_threads(std::min(threads, most_threads));
 }

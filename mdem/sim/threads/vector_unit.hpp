@@ -15,8 +15,8 @@ namespace ropewalk {
 
 enum class VectorUnit { base, v3, v4 };
 
-// Of this thread, and of the teams that it makes (in_team(), for_each()): simulations in several threads of a
-// process may have units of their own. The best of the processor, until another one is chosen.
+// The unit of this thread and of the teams that it makes (in_team(), for_each()): simulations in several threads
+// of a process may have units of their own. The best of the processor, until another one is chosen.
 VectorUnit vector_unit_in_use();
 void use_vector_unit(VectorUnit unit);
 

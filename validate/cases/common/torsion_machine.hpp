@@ -66,7 +66,7 @@ struct RopeInMachine {
   // With the spins of all tubes held in the clamps or free.
   // Throws std::runtime_error where it does not come to rest.
   Reading wound(double twist, Length length, bool spins_free = false) const;
-  // By the formulas above. Where the length is free: at the stretch without tension.
+  // What the formulas above give. Where the length is free, it is that at the stretch without tension.
   Reading theory(const ParameterSet& oracle, double twist, Length length, bool spins_free = false) const;
 
  private:

@@ -48,7 +48,7 @@ void LineEngine::update_list(const Topology& topology, const Interaction& in, co
   list_seconds_ += omp_get_wtime() - began;
 }
 
-// By one thread: the positions of the nodes, what acts on them, and that on their elements.
+// One thread computes the positions of the nodes, what acts on them, and what acts on their elements.
 template <class Buffers>
 void LineEngine::compute_chunk(std::size_t k, std::size_t thread, PairWork* pairs, Buffers& b,
                                KernelInput<Buffers> in) {

@@ -21,7 +21,7 @@ struct NeighbourSpan {
   static constexpr int longest = 64;  // elements
 
   int first = 0;                   // element
-  int range = 0;                   // of those that the chunk writes to
+  int range = 0;                   // place in LineChunk::ranges, which the chunk writes to
   float gap_to_cutoff = 0;         // nm: so far outside the cutoff its nearest node was when the list was built
   short node_from = 0, nodes = 0;  // that may come within the cutoff; counted from the first node of `first`
   short type = 0;                  // type of the tube
@@ -72,9 +72,9 @@ class LineList {
   // Entries of a chunk's buffers before its first element, so that whole vectors can begin there.
   static constexpr int room_before = 16;
 
-  // From the pairs of the neighbour list and the positions that it was built at, and lists the pairs for `pairs`
-  // (or null). Throws std::invalid_argument where a tube type has other numbers of nodes towards different
-  // partners.
+  // Builds it from the neighbour list's pairs and the positions at which that list was built, and lists the pairs
+  // for `pairs` (or null). Throws std::invalid_argument where a tube type has other numbers of nodes towards
+  // different partners.
   void build(const Topology& topology, const Interaction& interaction, const NeighbourList& list, PairWork* pairs);
 
   Span<NeighbourSpan> spans(int element) const { return entries_of(element, begin_, spans_); }

@@ -68,9 +68,9 @@ struct RadialPieces {
   static constexpr int pieces = 4, degree = degree_;
   static constexpr int operations = 4 + 2 * (degree - 1) + 2;  // w, t and its square; du/dw; factor w^2
 
-  // By `entry`.
+  // `entry` is the last index of these arrays.
   alignas(64) T c[degree + 1][pieces] = {};  // coefficients of u
-  alignas(64) T d[degree][pieces] = {};      // of du/dw (dw/dy)/w^2, which times w^2 is du/dy of a RadialTable
+  alignas(64) T d[degree][pieces] = {};      // likewise of du/dw (dw/dy)/w^2; times w^2: du/dy of a RadialTable
   alignas(64) T middle[pieces] = {};         // w
   T edge[pieces - 1] = {};                   // X where pieces meet, falling
   T width = 0, pole = 0;                     // w = width/(X - pole)

@@ -24,7 +24,7 @@ double square(double x) { return x * x; }
 struct Direction {
   double x = 1, y = 0;
 };
-// By how much alpha has grown from one direction to another, within half a turn. The arc sine's series is exact to
+// How much alpha has grown from one direction to another, within half a turn. The arc sine's series is exact to
 // 1e-12.
 double turned(const Direction& from, const Direction& to) {
   const double sine = from.y * to.x - from.x * to.y, cosine = from.x * to.x + from.y * to.y, q = sine * sine;
@@ -113,7 +113,7 @@ class DryFrictionTerm : public ForceTerm {
     });
   }
 
-  // In blocks of contacts, whose sums are added up in their order whatever the threads.
+  // Takes the contacts in blocks, whose sums are added up in their order whatever the threads.
   StateUpdate advance(double, const State& state) override {
     std::vector<Advanced> advanced((contacts_.size() + block - 1) / block);
     for_each(advanced.size(), contacts_.size() > parallel_from, [&](std::size_t b) {

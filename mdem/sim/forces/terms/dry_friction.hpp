@@ -49,7 +49,7 @@ struct DryFriction {
   double elastic_slip = 0;  // delta, nm
   double drag = 0;          // eta, eV ps/nm^3
   bool corrugated = false;  // the second potential
-  TypePairs types;          // of tubes between which it acts
+  TypePairs types;          // types of tubes between which it acts
 };
 
 // `scene`: all elements.

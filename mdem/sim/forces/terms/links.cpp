@@ -207,7 +207,7 @@ struct LinkAction {
   double pull = 0;  // the size of the force, without what pushes the walls apart
 };
 
-constexpr double told = 1;  // in a memory: that its links formed has been told
+constexpr double told = 1;  // value in a memory: the forming of its links has been told
 constexpr std::size_t numbers_of_head = 5, numbers_of_link = 17;
 // Version 0.3.0 remembered links that had broken too. The last number is the time, or -1.
 constexpr std::size_t numbers_of_head_0_3 = 4, numbers_of_link_0_3 = 21;
@@ -439,7 +439,7 @@ class LinkTerm : public ForceTerm {
     return 2 * arm + std::min(stretch, unbreakable);
   }
   void check_stretch(const State& state) const {
-    constexpr double of_a_step = 0.1;  // nm: the last step may have stretched it to where it breaks
+    constexpr double of_a_step = 0.1;  // nm: a link may stretch by this much in the step in which it breaks
     for (const Link& link : links_) {
       const int a = place_of(here_, link.at.a), b = place_of(here_, link.at.b);
       if (a < 0 || !here_.owns(a)) continue;
@@ -510,7 +510,7 @@ class LinkTerm : public ForceTerm {
     set_in_order(state);
     return links_.size() > before;
   }
-  // By places here. Of two copies other processes know more.
+  // `place` counts elements here. Other processes know more of a link between two copies.
   void take_in(LinkPlace place, const State& state) {
     if (!here_.owns(place.a) && !here_.owns(place.b)) return;
     Link link{std::move(place), state.time, Vector3::Zero()};

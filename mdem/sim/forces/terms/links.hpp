@@ -40,7 +40,7 @@ struct LinkLaw {
   double placed_at = 0;  // ps; above 0: `density` and `at_ends` place links in the first step after this time
   double forming = 0, most = 0;  // 1/(nm ps), 1/nm
   std::uint64_t seed = 1;
-  std::uint64_t lineage = 0;  // of the links that form while the scene moves: see lineage_key()
+  std::uint64_t lineage = 0;  // lineage of the links that form while the scene moves: see lineage_key()
   TypePairs types;            // types of tubes whose contacts get links
 };
 

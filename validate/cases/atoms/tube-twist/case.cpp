@@ -73,7 +73,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   return t;
 }
 
-// From the natural twist of the tube, at which the bond is at rest, and above the energy there.
+// The twist counts from the natural one of the tube, at which the bond is at rest; the energy from that there.
 TubeCurve curve_of(const CaseTube& tube, const ReferenceTable& data) {
   const double radius = tube.set.radius, natural = natural_twist(tube.set);
   const auto energy = [radius](const ParameterSet& set, double shear) {

@@ -83,7 +83,7 @@ std::vector<std::pair<int, int>> contacts() {
   return pairs;
 }
 
-// Spacing by the centres of slices, tube by tube.
+// Mean spacing of tubes that touch. `centres`: the centres of the slices, tube by tube.
 double spacing_of(const std::vector<Vector3>& centres) {
   Vector3 axis = Vector3::Zero();
   for (int k = 0; k < tubes * slices; ++k) axis += (k % slices < slices / 2 ? -1 : 1) * centres[k];
@@ -115,7 +115,7 @@ Average average_of(const std::vector<Sample>& samples) {
 
 // --- Atoms ---
 
-// From end to end, so that the rows of a slice are numbered one after another.
+// Sorts the atoms from end to end, so that the rows of a slice are numbered one after another.
 std::vector<RopeTube> sorted_atoms(const ParameterSet& set) {
   std::vector<RopeTube> atoms = rope_atoms(bundle(), set);
   for (RopeTube& t : atoms)

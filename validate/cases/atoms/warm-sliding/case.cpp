@@ -184,7 +184,7 @@ CaseResult run(const CaseContext& context) {
   const ReferenceTable table = reference(
       context, context.set(0), "warm-sliding", fresh_tolerance, [&] { return slide_atoms(context); }, result);
   const ParameterSet middle = context.model(0), other = context.model(1);
-  // By speed, of the tubes that are drawn out: among their like, and among others.
+  // Curves of the tubes that are drawn out, by speed: among their like, and among others.
   std::array<std::array<std::vector<double>, 4>, 2> drawn_out;
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     const Motion m = motions().at(k);

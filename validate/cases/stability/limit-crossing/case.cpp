@@ -89,8 +89,8 @@ Path shifting(RigidTubes& pair, const Vector3& from, const Vector3& direction, d
 }
 
 struct Smoothness {
-  double energy_jump = 0, slope_jump = 0;  // the rest of the largest change over an interval cut down to 1e-9
-  double energy_at = 0, slope_at = 0;      // where
+  double energy_jump = 0, slope_jump = 0;  // the largest change that is left over an interval of 1e-9
+  double energy_at = 0, slope_at = 0;      // places of these changes
   double steepest = 0;
   double gradient = 0;  // slope against the difference of energies, over the largest slope
   double highest = -1e300;
