@@ -86,7 +86,7 @@ double expected_shock(const Scene& scene, const Prepared& p) {
 namespace {
 
 constexpr double at_once = 1e-3;  // ps
-// Tubes may break so much later than foreseen; then the rope is another one, of which nothing is foreseen.
+// Tubes may break so much later than foreseen. When the strongest have broken, the rope is another one.
 constexpr double latest_break = 1.25;
 
 // What a scene does to one limit.
@@ -204,19 +204,24 @@ std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& p) {
     strengths.push_back(strength_of(p, type));
   }
   Breaks first;
+  double last = 0;  // ps, when the strongest tubes of the strongest type break
   std::string of;
-  for (std::size_t k = 0; k < types.size(); ++k)
-    if (const Breaks breaks = breaks_ahead(demands[k], end, p.topology.types[types[k]], strengths[k]);
-        breaks.from < first.from) {
+  for (std::size_t k = 0; k < types.size(); ++k) {
+    const TubeType& type = p.topology.types[types[k]];
+    ForceTerm::Strength strongest = strengths[k];
+    strongest.weakest = strongest.strongest;
+    last = std::max(last, breaks_ahead(demands[k], end, type, strongest).from);
+    if (const Breaks breaks = breaks_ahead(demands[k], end, type, strengths[k]); breaks.from < first.from) {
       first = breaks;
       of = types.size() > 1 ? " of " + scene.sets[types[k]].name : "";
     }
+  }
   if (std::isfinite(first.from))
     out.push_back(fmt::format("The load may break tubes{}, {}: a bond breaks once it is {}.", of,
                               first.from > at_once ? fmt::format("from about {:.3g} ps on", first.from)
                                                    : "from the start on",
                               first.by));
-  const double until = std::min(end, latest_break * first.from);
+  const double until = std::min(end, latest_break * last);
   for (const auto& [asked, member] : all_asked()) {
     const LimitKind& kind = *asked;
     const auto limit_of = [&, own = member](const Limits& of) {

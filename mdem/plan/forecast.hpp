@@ -11,8 +11,8 @@
 namespace ropewalk {
 
 // A sentence for each, by the upper estimates of plan/demands.hpp: what the scene begins with, and what the load
-// brings it to, with the time when it gets there. Before them, when tubes break by [failure]; limits are foreseen up
-// to a quarter of this time after it.
+// brings it to, with the time when it gets there. Before them, when tubes break by [failure]; limits are foreseen until
+// a quarter later than the strongest break.
 std::vector<std::string> limits_ahead(const Scene& scene, const Prepared& prepared);
 
 // What of this scene limits_ahead() leaves out, as a sentence; empty: nothing.

@@ -437,7 +437,7 @@ TEST_F(Cli, ADeviceThatIsNotThereLeavesNothing) {
   spit(dir / "still.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 16\n"
        "[run]\nmode = \"relax\"\n");
-  EXPECT_THAT(run("run still.toml --out d --device c++").err, HasSubstr("--device: does not go with a relaxation"));
+  EXPECT_THAT(run("run still.toml --out d --device c++").err, HasSubstr("--device: does not go with run.mode = "));
   const Outcome hot = run("run hot.toml --out d --device c++");
   EXPECT_EQ(hot.code, 2);
   EXPECT_THAT(hot.err, HasSubstr("a device cannot run this scene: devices have no thermostat"));
