@@ -193,7 +193,8 @@ def hostile_pages(browser, program, folder):
                   ["compare", "set.toml", "set.toml", "--page", "sets.html"]):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     # A run directory may come from a stranger. Each text of its manifest and limits is therefore a hostile one here.
-    for name, kept in (("manifest.json", ("format", "status", "scene_hash", "parameter_hash")), ("limits.json", ("format", "key"))):
+    kept_of_manifest = ("format", "status", "scene_hash", "parameter_hash", "own_parts")
+    for name, kept in (("manifest.json", kept_of_manifest), ("limits.json", ("format", "key"))):
         path = folder / "hostile" / name
         path.write_text(json.dumps(hostile_texts(json.loads(path.read_text()), kept)))
     subprocess.run([program, "report", "hostile"], cwd=folder, check=True, stdout=subprocess.DEVNULL)

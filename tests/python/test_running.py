@@ -30,14 +30,14 @@ class RunningTest(FolderTest):
         subprocess.run([find_program(), *arguments], check=True, capture_output=True)
         return contents(name)
 
-    # But for the times of the clock, in manifest, checkpoint and report.
+    # But for the times of the clock and the name of the program, in manifest, checkpoint and report.
     def assert_same_files(self, mine: dict[str, bytes], theirs: dict[str, bytes]) -> None:
         self.assertEqual(set(mine), set(theirs))
         for name in set(mine) - {"manifest.json", "checkpoint.bin", "checkpoint-before.bin", "report.html"}:
             self.assertEqual(mine[name], theirs[name], name)
         manifests = [json.loads(files["manifest.json"]) for files in (mine, theirs)]
         for manifest in manifests:
-            del manifest["started"], manifest["wall_seconds"]
+            del manifest["started"], manifest["wall_seconds"], manifest["program"]
         self.assertEqual(*manifests)
 
     def test_the_directory_is_that_of_the_program(self):
