@@ -279,11 +279,8 @@ void Coarsening::fit_first() {
                      "take fewer atoms");
   fit();
   for (std::size_t t = 0; t < tubes_.size(); ++t) {
-    const auto first = static_cast<std::size_t>(topology_.tube_begin[t]);
     tubes_[t].radius = mean_radius(t);
-    double squares = 0;
-    for (const double d : fits_[t].misfits(positions_, state_, first)) squares += d * d;
-    tubes_[t].misfit = std::sqrt(squares / static_cast<double>(tubes_[t].atoms));
+    tubes_[t].misfit = misfit(t);
   }
 }
 
@@ -311,6 +308,13 @@ double Coarsening::mean_radius(std::size_t tube) const {
   return sum / (topology_.tube_begin[tube + 1] - topology_.tube_begin[tube]);
 }
 
+double Coarsening::misfit(std::size_t tube) const {
+  double squares = 0;
+  for (const double d : fits_[tube].misfits(positions_, state_, static_cast<std::size_t>(topology_.tube_begin[tube])))
+    squares += d * d;
+  return std::sqrt(squares / static_cast<double>(tubes_[tube].atoms));
+}
+
 bool Coarsening::next() {
   AtomFrame frame;
   const bool periodic = frame_.box.periodic_known;
@@ -331,13 +335,17 @@ bool Coarsening::next() {
       at += way;
     }
   fit();
-  // A flat ribbon has 0.79 of the radius of the tube that collapsed to it.
+  // A flat ribbon has 0.79 of the radius of the tube that collapsed to it, and its atoms are nearer than that to their
+  // places.
   for (std::size_t t = 0; t < tubes_.size(); ++t)
-    if (const double radius = mean_radius(t), first = tubes_[t].radius; !(radius > 0.5 * first && radius < 1.5 * first))
+    if (const double radius = mean_radius(t), first = tubes_[t].radius, off = misfit(t);
+        !(radius > 0.5 * first && radius < 1.5 * first && off < first))
       throw InputError({atoms_->file(), 0, ""},
-                       fmt::format("at {:g} ps the atoms of tube {} lie {:.3g} nm from its axis, in the first frame {:.3g} nm",
-                                   frame_.time, t, radius, first),
-                       "are they in another order than in the first frame, lengths not in Angstrom, or has it fallen apart?");
+                       fmt::format("at {:g} ps the atoms of tube {} lie {:.3g} nm from its axis, in the first frame "
+                                   "{:.3g} nm, and {:.3g} nm from their places in its elements",
+                                   frame_.time, t, radius, first, off),
+                       "are they in another order than in the first frame, lengths not in Angstrom, or has it fallen "
+                       "apart?");
   return true;
 }
 

@@ -53,8 +53,8 @@ class Coarsening {
   const std::vector<SectionShape>& shapes() const { return shapes_; }
   // Each element's cross-section: its atoms over its sites.
   std::vector<double> filled() const;
-  // Goes to the next frame; false at the end. Throws InputError where it is no later than the present one, or where its atoms
-  // are no tubes any more.
+  // Goes to the next frame; false at the end. Throws InputError where it is no later than the present one, or where
+  // its atoms are no tubes any more.
   bool next();
 
  private:
@@ -63,6 +63,7 @@ class Coarsening {
   void fit_first();
   void fit();
   double mean_radius(std::size_t tube) const;
+  double misfit(std::size_t tube) const;
 
   CoarsenSettings settings_;
   std::unique_ptr<AtomSource> atoms_;
