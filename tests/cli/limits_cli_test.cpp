@@ -116,7 +116,7 @@ TEST_F(Limits, HaveAHeadingEach) {
 
 // Scenes that refinement refuses are not told to refine.
 TEST_F(Limits, AdviseWhatWorks) {
-  spit(dir / "p.toml", slurp(dir / "s.toml") + "[failure]\nstrain = 0.06\n");
+  spit(dir / "p.toml", slurp(dir / "s.toml") + "[failure]\nstrain = 0.06\nstrain_deviation = 0.001\n");
   const Outcome o = run("run p.toml --out p --quiet");
   EXPECT_THAT(o.err, HasSubstr("take a shorter element_length_nm; see ropewalk help twist_deg"));
   EXPECT_THAT(o.err, Not(HasSubstr("--on-limit refine")));

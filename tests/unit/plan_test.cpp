@@ -56,7 +56,8 @@ TEST(Outcome, ComparesWhatCounts) {
   EXPECT_NEAR(outcome_of(log(100, 1), {"twist_eV"}, true).of.at("twist_eV").value, 100, 1e-12);
 }
 
-// The moment is the slope of the energy of tubes that turn together, as long as one another along the axis.
+// The moment is the slope of the energy of tubes that turn together, as long as one another along the axis, and bend to
+// helices.
 TEST(Features, ARopeTurnsAsFarAsItsTubesBearTogether) {
   Scene scene = scene_from(bundle);
   const Prepared p = prepare(scene);
@@ -64,13 +65,14 @@ TEST(Features, ARopeTurnsAsFarAsItsTubesBearTogether) {
   const BondStiffness& k = p.topology.types[0].bond;
   const auto energy = [&](double at) {  // per length
     std::vector<double> strains;
-    double mean = 0;
+    double mean = 0, sum = 7 * 0.5 * k.twist * at * at;
     for (int t = 0; t < 7; ++t) {
       const Vector3 first = p.state.position[static_cast<std::size_t>(p.topology.tube_begin[t])];
-      strains.push_back(0.5 * first.head<2>().squaredNorm() * at * at);
+      const double rho2 = first.head<2>().squaredNorm();
+      strains.push_back(0.5 * rho2 * at * at);
       mean += strains.back() / 7;
+      sum += 0.5 * k.bend * rho2 * std::pow(at, 4);
     }
-    double sum = 7 * 0.5 * k.twist * at * at;
     for (const double strain : strains) sum += 0.5 * k.stretch * (strain - mean) * (strain - mean);
     return sum;
   };
