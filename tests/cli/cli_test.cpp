@@ -206,9 +206,10 @@ TEST_F(Cli, EveryTemplateIsWrittenAndPassesItsCheck) {
     ASSERT_EQ(made.code, 0);
     const Outcome o = run("check my-" + kind + ".toml");
     EXPECT_EQ(o.code, 0) << o.err;
-    // A limit that the scene passes stands in the first line.
+    // A limit that the scene passes stands in the first line, but not one of what tubes may do that break before.
     std::smatch limit;
-    if (std::regex_search(o.out, limit, std::regex("note: The load may bring (\\S+) to"))) {
+    if (o.out.find("may break tubes") == std::string::npos &&
+        std::regex_search(o.out, limit, std::regex("note: The load may bring (\\S+) to"))) {
       EXPECT_NE(made.out.substr(0, made.out.find('\n')).find("limits." + limit.str(1)), std::string::npos)
           << made.out;
     }

@@ -84,8 +84,7 @@ SceneKind rope_kind() {
       {"rope",
        "parallel tubes along z, centred on the origin",
        {Key::integer("tubes", 1, max_elements, &RopeSource::tubes, required("91"),
-                     "number of tubes in a cross-section; by default a hexagonal one: 1, 7, 19, 37, 61, 91, 127, "
-                     "169, 217, ..."),
+                     "tubes in a cross-section; a hexagonal one has 1, 7, 19, 37, 61, 91, ..."),
         Key::word("packing",
                   Words<RopeSource::Packing>{{"hexagonal", RopeSource::Packing::hexagonal},
                                              {"round", RopeSource::Packing::round},
