@@ -462,7 +462,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       // What is left of forces at rest is rounding, which no model foresees.
       if ((step.disagreement() < 0.3 && step.scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
         pace->rate = std::max(options_.least_rate,
-                              pace->rate / (step.disagreement() < 0.02 && step.scale == 1 ? 10 : 3));
+                              pace->rate / 3);
       else if (step.end - step.by_model < -0.7 * std::fabs(step.first))
         pace->rate *= 2;
       if (pace->falling > 0 && pace->rate < 1.3 * pace->falling) {
