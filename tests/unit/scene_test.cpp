@@ -445,9 +445,12 @@ TEST(Templates, AllAreReadAndBuilt) {
       return keys;
     };
     EXPECT_EQ(keys_of(t.brief), keys_of(t.text.substr(0, t.text.find("\n[[expect]]"))));
-    EXPECT_LE(std::count(t.brief.begin(), t.brief.end(), '\n'), 30) << t.brief;
+    // Not counted are lines that go on with the comment of the line before.
+    const std::regex goes_on("\n +#");
+    const auto wrapped = std::distance(std::sregex_iterator(t.brief.begin(), t.brief.end(), goes_on), {});
+    EXPECT_LE(std::count(t.brief.begin(), t.brief.end(), '\n') - wrapped, 30) << t.brief;
     const std::string first = "\n# " + (t.dissipation.empty() ? std::string("All other keys") : t.dissipation);
-    EXPECT_EQ(t.brief.find("\n# "), t.brief.find(first)) << t.brief;
+    EXPECT_NE(t.brief.find(first), std::string::npos) << t.brief;
     for (const SceneKey& k : scene_keys()) EXPECT_THAT(t.text, HasSubstr(k.key + " = ")) << k.table;
   }
 }
