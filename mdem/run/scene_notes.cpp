@@ -197,14 +197,14 @@ void warn_of_opening_slice(const Prepared& p, std::vector<std::string>& warnings
   constexpr double bears = 20 * units::degree;
   const auto slices = p.loads.of<PeriodicLoad>();
   if (slices.empty() || p.topology.strands() == p.topology.tubes()) return;
+  const auto begin_of = [&](int strand) {
+    const int first = p.topology.groups.strand_begin[static_cast<std::size_t>(strand)];
+    return Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(first)])]);
+  };
   Vector3 axis = Vector3::Zero();
-  for (const int first : p.topology.groups.strand_begin)
-    axis += Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[first])]) / p.topology.strands();
+  for (int s = 0; s < p.topology.strands(); ++s) axis += begin_of(s) / p.topology.strands();
   double rim = 0, twist = 0;
-  for (const int first : p.topology.groups.strand_begin)
-    rim = std::max(
-        rim,
-        (Vector3(p.state.position[static_cast<std::size_t>(p.topology.tube_begin[first])]) - axis).head<2>().norm());
+  for (int s = 0; s < p.topology.strands(); ++s) rim = std::max(rim, (begin_of(s) - axis).head<2>().norm());
   for (const Schedule::Point& point : slices.front()->schedule().points())
     twist = std::max(twist, std::fabs(point.value));
   const double angle = std::atan(rim * twist);
