@@ -77,7 +77,7 @@ std::string mean_cells(const std::vector<LogRow>& log, double mean_ps, const std
   return text;
 }
 
-// Whether the scene has an [[expect]] that holds for all points, whatever varies. One for a single scene does not.
+// Whether the scene has an [[expect]] table for all points of a sweep. A table for a single scene is none.
 bool expects_something(const Sweep& sweep) {
   const toml::table scene = parsed_toml(sweep.scene_text, sweep.scene_path);
   const toml::array* expected = scene["expect"].as_array();

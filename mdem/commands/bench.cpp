@@ -57,7 +57,7 @@ void print(const StepCost& c, const BenchArguments& a, const Prepared& prepared)
   fmt::print("{:9.2f} s of wall time per simulated ns\n", t.wall * n * 1e-9 / prepared.time_step * 1e3);
 }
 
-// With the elements on a device.
+// Times the steps of a scene whose elements a device moves.
 int bench_device(const BenchArguments& a) {
   Scene scene = bench_scene(a.scene, a.law);
   const Prepared prepared = prepare(scene);

@@ -22,7 +22,7 @@ struct CoarsenArguments {
   std::string state;                    // CSV file to write instead, of one frame
   std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
   double element_length = 0;            // nm; 0: the set's
-  double time_step_fs = 1;              // of MD steps in dumps that state no time
+  double time_step_fs = 1;              // step of the MD, for dumps that state no time
   bool force = false;
   bool json = false;
   bool quiet = false;

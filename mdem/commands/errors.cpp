@@ -51,7 +51,7 @@ std::string value_text(double value, double error) {
 template <class Error>
 using NamedErrors = std::vector<std::pair<std::string, Error>>;
 
-// What the inputs' error comes from: "GJ 80 %, EA 12 %".
+// The share of each input in the error of a result: "GJ 80 %, EA 12 %".
 std::string shares_words(const ResultError& e, const RunErrors& errors) {
   double sum = 0;
   for (const double part : e.parts) sum += part * part;

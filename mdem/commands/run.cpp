@@ -25,11 +25,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What both verbs take.
+// Options of both `run` and `resume`.
 struct StepArguments {
   int threads = 0;                // 0: all cores
-  std::int64_t steps = -1;        // time step at which to stop; -1: the scene's end
-  double until_ps = -1;           // time at which to stop; -1: the scene's end
+  std::int64_t steps = -1;        // number of the run's last step; -1: at the scene's end
+  double until_ps = -1;           // ps, when the run stops; -1: at the scene's end
   std::string on_limit = "warn";  // "warn", "stop" or "refine"
   std::string wall_time;          // see seconds_of_wall_time(); empty: any
   std::string instructions;       // empty: the machine's best, or those that the run was begun with

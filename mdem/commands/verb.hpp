@@ -1,4 +1,4 @@
-// What verbs of `ropewalk` share.
+// Options and functions that several verbs of `ropewalk` share.
 #pragma once
 
 #include <memory>

@@ -11,7 +11,7 @@
 
 namespace ropewalk {
 
-// What the reader of a law is given.
+// The table [contact.NAME] of a set, as the reader of a law gets the table.
 struct LawTable {
   using Number = std::function<double(const TomlTable& section, const std::string& key, const std::string& unit,
                                       const Bounds&)>;

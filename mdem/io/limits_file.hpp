@@ -14,7 +14,7 @@ namespace ropewalk {
 struct LimitRecord {
   std::string key;   // as in the scene's [limits]
   std::string unit;  // may be empty
-  // In that unit, below zero where a bond is pressed; a limit of 0 is not watched.
+  // Limit and largest value are in `unit`, and below zero where a bond is pressed; a limit of 0 is not watched.
   double limit = 0;
   double largest = 0;
   double largest_at_ps = 0;

@@ -37,7 +37,7 @@ LogRow row_of(const CsvReader& csv, const std::vector<std::size_t>& columns) {
   return row;
 }
 
-// What to do about a log with other columns; names the version that the manifest beside it names.
+// The remedy for a log with other columns: the version of ropewalk that the manifest beside the log names.
 std::string other_log(const std::string& path) {
   std::string of = "the version in its manifest.json";
   try {

@@ -19,7 +19,7 @@ std::size_t rows_within(const std::vector<LogRow>& log, const std::vector<LimitR
 // end.
 std::function<double(const LogRow&)> torque_of(const std::vector<LogRow>& log);
 
-// What curves show: a column of the log, or torque_nN_nm, which is torque_of().
+// A quantity that curves show: a column of the log, or torque_nN_nm, which is torque_of().
 struct CurveColumn {
   std::string quantity, unit, meaning;
   bool whole = false;  // integers

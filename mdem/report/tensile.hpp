@@ -9,7 +9,7 @@
 
 namespace ropewalk {
 
-// A tensile test as the log of one run has it. The pull (io/pull.hpp) ends where the stress has fallen to half.
+// The tensile test in the log of one run. The pull (io/pull.hpp) ends where the stress has fallen to half.
 struct TensileTest {
   LogRow before;                  // the row in which the pull begins
   double strength = 0;            // GPa, largest stress

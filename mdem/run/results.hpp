@@ -19,7 +19,7 @@ RunResults results_of(const RunDirectory& dir);
 // The same, which also says at which clamp the first tube broke.
 RunResults results_of(const RunDirectory& dir, const Prepared& prepared);
 
-// Values of a run and of those that repeat it for its errors. Each run is read once.
+// Values of a run, and of the runs that repeat this run for its errors. Each run is read once.
 class RepeatedValues {
  public:
   using Values = std::function<std::vector<double>(const RunDirectory&)>;

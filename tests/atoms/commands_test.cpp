@@ -172,7 +172,7 @@ TEST_F(Bridge, FramesThatDoNotFollowOneAnotherAreRefused) {
   for (int frame = 0; frame < 2; ++frame)
     ASSERT_EQ(run(fmt::format("atoms made --frame {0} -o f{0}.xyz", frame)).code, 0);
   const std::string first = slurp(dir / "f0.xyz"), second = slurp(dir / "f1.xyz");
-  // The atoms of the second frame by other numbers, and in nm.
+  // The second frame twice: with its atoms in another order, and with its lengths in nm.
   std::vector<std::string> lines;
   std::istringstream text(second);
   for (std::string line; std::getline(text, line);) lines.push_back(line);

@@ -1,4 +1,4 @@
-// What is said of a scene before its first step.
+// The notes on a scene that are printed before its first step.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
