@@ -34,9 +34,7 @@ struct LawNumbers {
   std::string (*rows)(const std::any& numbers, const std::string& section) = nullptr;
 };
 
-// The shipped laws, and those that were added.
+// The numbers of the shipped laws. A set has no table for a law from elsewhere.
 const std::vector<LawNumbers>& law_numbers();
-// For laws from elsewhere; returns true, so that a static variable can do it. The name must be new.
-bool add_law_numbers(LawNumbers law);
 
 }  // namespace ropewalk
