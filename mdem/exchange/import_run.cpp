@@ -19,7 +19,7 @@
 #include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
 #include "run/pending_files.hpp"
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "scene/state_csv.hpp"
@@ -98,6 +98,7 @@ class Import {
       state.time = row->second.time;
       force_.force = force;
       force_.torque = torque;
+      steps_ = states.header();
       memory_ = std::move(memory);
       add(state, row->second);
     }
@@ -225,9 +226,8 @@ class Import {
                                        account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
-          "note: from step {} to {} the energy balance does not close. `run` would have gone back and divided "
-          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
-          "again",
+          "note: from step {} to {} the energy balance does not close: set run.time_step_fs to half of {:.4g}, and "
+          "export and run it again",
           marked_at_, step, prepared_.time_step / units::fs));
     told_of_account_ = told_of_account_ || !closes;
     mark_ = now;
@@ -254,6 +254,7 @@ class Import {
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.set_memory(memory_);
+    simulation.divide_steps(static_cast<int>(steps_.divided));
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated, last_.heat});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.files.log = mark_of(log_);
@@ -261,6 +262,7 @@ class Import {
     if (!event_text_.empty()) checkpoint_.files.events = mark_of(event_text_);
     checkpoint_.files.log.step = checkpoint_.files.frames.step = reached_;
     checkpoint_.snapshot = nullptr;
+    checkpoint_.control = steps_.control();
     checkpoint_.ends_for = StopReason::none;
     checkpoint_.limits.limits = watch_.records();
     checkpoint_.simulation = simulation.serialise();
@@ -320,6 +322,7 @@ class Import {
   bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // force terms' memory in the last state
+  StateHeader steps_;           // of the last state
   std::vector<TermEvent> events_;  // since the last state that was taken
   std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;

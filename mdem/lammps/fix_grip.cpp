@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lammps/fix_motion.hpp"
 #include "lammps/pair_mdem.hpp"
 
 namespace ropewalk::lammps {
@@ -80,9 +81,14 @@ void FixGrip::gather() {
   }
 }
 
-void FixGrip::post_force(int) {
+void FixGrip::find_loads() {
   gather();
-  point_loads(acting_, state_, model_->time_at(update->ntimestep), loads_);
+  const auto* motion = find_fix<FixMotion>(lmp);
+  point_loads(acting_, state_, motion ? motion->time_of_forces() : model_->time_at(update->ntimestep), loads_);
+}
+
+void FixGrip::post_force(int) {
+  find_loads();
   for (const PointLoad& load : loads_) {
     const int i = atom_[static_cast<std::size_t>(load.element)];
     add(atom->f[i], load.force);

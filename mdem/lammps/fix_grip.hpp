@@ -17,6 +17,8 @@ class FixGrip : public LMP::Fix {
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;
   void setup(int vflag) override { post_force(vflag); }
+  // The loads of the present state, for the work of the next kick.
+  void find_loads();
   void post_force(int vflag) override;
 
   // Atoms of the elements that it acts on, on this rank.
