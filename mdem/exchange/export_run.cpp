@@ -53,6 +53,8 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   if (!groups.strand_begin.empty())
     start.strand_begin.assign(groups.strand_begin.begin(), groups.strand_begin.end() - 1);
   start.strand_holes = groups.strand_holes;
+  start.images = groups.images;
+  start.period = groups.period;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
   const bool others_break = std::any_of(scene.drives.begin(), scene.drives.end(),

@@ -18,6 +18,7 @@
 #include "run/colours.hpp"
 #include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
+#include "run/moving_scene.hpp"
 #include "run/pending_files.hpp"
 #include "sim/dynamics/step_control.hpp"
 #include "scene/lammps_files.hpp"
@@ -49,7 +50,8 @@ class Import {
         start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
         reached_(start_.state().step),
         gauges_(start_.gauges()),
-        first_(start(scene_, prepared_).forces().energy) {}
+        first_(start(scene_, prepared_).forces().energy),
+        first_of_period_(energies_of_period(start(scene_, prepared_))) {}
 
   ImportedRun go(bool accept_changes) {
     const LammpsStart began = read_start(files_);
@@ -183,6 +185,10 @@ class Import {
     account.first_energy = checkpoint_.first_energy;
     account.first = first_;
     account.ends = readings_at(state);
+    if (first_of_period_)
+      account.period = EnergyAccount::Period{*energies_of_period(prepared_.topology, tubes_now, prepared_.interaction, state,
+                                                                 account.potential.terms),
+                                             *first_of_period_};
     log_ += log_line(log_row(observer_, scene_, tubes_now, state, account));
     check_limits(tubes_now, state, list, account);
     check_account(account, state.step);
@@ -315,6 +321,7 @@ class Import {
   std::int64_t reached_ = 0;
   Gauges gauges_;
   Energies first_;
+  std::optional<Energies> first_of_period_;  // none: no slice
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
   EnergyMark mark_;  // before the states that are not judged yet

@@ -119,6 +119,7 @@ bool FixMotion::only_known_fixes() const {
 // Whether LAMMPS exchanges elements in this step, for whatever reason.
 bool FixMotion::exchanged_now() const {
   const auto now = update->ntimestep;
+  if (may_stop_now()) return true;
   if (output->restart_flag && output->next_restart == now) return true;
   for (int k = 0; k < modify->nfix; ++k)
     if (modify->fix[k]->force_reneighbor && modify->fix[k]->next_reneighbor == now) return true;
@@ -151,6 +152,7 @@ void FixMotion::look_at_list(int& signal) {
 }
 
 void FixMotion::hand_out() {
+  if (may_stop_now()) next_reneighbor = update->ntimestep;
   if (exchanged_now()) keep_memory();
   if (!engine_->leads()) return;
   if (exchanged_now())

@@ -67,6 +67,9 @@ class FixMotion : public LMP::Fix {
 
   // What LAMMPS does between two steps. Whether the engine's list is too old; `signal` becomes the largest of all ranks.
   void look_at_list(int& signal);
+  bool may_stop_now() const {
+    return (update->ntimestep - model_->start.step) % lammps_steps_between_stops == 0;
+  }
   bool exchanged_now() const;
   void hand_out();  // own elements, to LAMMPS's arrays
   void exchange_elements();

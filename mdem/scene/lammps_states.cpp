@@ -64,7 +64,7 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
   for (StateInFile s; file.seekg(s.at) && read(file, s.header); s.at = s.end()) {
     const StateHeader& h = s.header;
     if (h.mark == std::array<char, 8>{}) break;
-    if (h.mark != state_mark) fail("does not begin as a state of this version does");
+    if (h.mark != state_mark) fail("does not begin as a state does");
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
     for (const std::int64_t step : {h.step, h.kept_until, h.keep})
