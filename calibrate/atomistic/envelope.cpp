@@ -133,7 +133,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
   Envelope envelope = stiffness.envelope;
   const FiniteTube finite(run.c, tube.shape, hexagons_in(run.c, tube.shape, specimen_length),
                           held_band(run.potential));
-  write_data(run, "envelope.data", finite.data());
+  write_data(run, "envelope.data", finite.data(run.potential.honeycomb));
   Measured* const results[] = {&envelope.kink_curvature, &envelope.twist_collapse, &envelope.compression};
   const std::vector<Loading> list = loadings(scaled_envelope(radius), radius);
 

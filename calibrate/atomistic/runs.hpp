@@ -94,12 +94,16 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
 // Shared pieces of the inputs.
 // The start of an input that minimises one uniform cell; v_wide scales v_new_x and v_new_y.
 std::string uniform_cell_commands(const Potential& potential, const std::string& data);
-// The period of a cell with no twist, or with very little where the period of the tube is long.
-LatticeVector untwisted_cell(Chirality c, double min_length);
+// The period of a cell with no twist, or with very little where the period of the tube is long. `a`: lattice constant, nm.
+LatticeVector untwisted_cell(Chirality c, double min_length, double a = graphene_lattice_constant);
 std::string header_commands(const std::string& boundary, double skin);
-// The atoms of each tube (nm) as a type of their own, in a box about the axis.
-std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,
-                      double z_high);
+// The atoms of each tube (nm), as tube_atoms() orders them, in a box about the axis. Each tube is a type of its own, or
+// two where its sublattices are of two species.
+std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low, double z_high,
+                      const Honeycomb& honeycomb = {});
+// The same of one tube in any order. `second`: whether an atom is of the second sublattice.
+std::string data_file_of_tube(const std::vector<Vector3>& atoms, const std::vector<char>& second, double half_width,
+                              double z_low, double z_high, const Honeycomb& honeycomb);
 // The start of an input that minimises one periodic cell, which may buckle or collapse.
 std::string cell_commands(const Potential& potential, const std::string& data);
 void write_data(const RunContext& run, const std::string& name, const std::string& content);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "atoms/honeycomb_file.hpp"
 #include "io/data_files.hpp"
 #include "io/file_group.hpp"
 #include "io/files.hpp"
@@ -66,14 +67,16 @@ std::vector<Number> numbers_of(const Calibration& c) {
 void print_result(const Calibration& c, const Grade& grade, const std::string& out) {
   const Stiffness& s = c.stiffness;
   const Chirality tube = c.request.chirality;
-  fmt::print("({},{}), {}, LAMMPS {}\n", tube.n, tube.m, c.request.potential.name, c.lammps.text);
+  fmt::print("{}, {}, LAMMPS {}\n", c.request.tube(), c.request.potential.name, c.lammps.text);
   if (tube.chiral() && tube.m > tube.n)
     fmt::print(
         "  the mirror image of ({},{}): coupling, natural twist and terms odd in shear have the other sign\n",
         tube.m, tube.n);
   for (const Number& n : numbers_of(c))
     fmt::print("  {:<26} {:>26} {}\n", n.words,
-               measured_text({n.in_set, n.value.value, "", n.value.standard_error, "", "", ""}), n.unit);
+               measured_text({n.in_set, n.value.value, "", n.value.standard_error, "", "", "",
+                              c.request.honeycomb().carbon()}),
+               n.unit);
   fmt::print("  line law: largest error {:.1e} of the well; published form {:.1e}", c.line.error, c.paper.error);
   if (c.universal) fmt::print("; universal law {:.1e}", c.universal_error);
   fmt::print("\n");
@@ -94,11 +97,12 @@ nlohmann::ordered_json result_json(const Calibration& c, const Grade& grade, con
   const Stiffness& s = c.stiffness;
   nlohmann::ordered_json j;
   j["chirality"] = {c.request.chirality.n, c.request.chirality.m};
+  if (const Honeycomb& h = c.request.honeycomb(); !h.carbon()) j["species"] = {h.species[0], h.species[1]};
   j["potential"] = c.request.potential.name;
   for (const Number& n : numbers_of(c)) {
     j[n.key] = n.value.value;
     j[std::string(n.key) + "_standard_error"] = n.value.standard_error;
-    if (const double spread = potential_spread(n.in_set); spread > 0)
+    if (const double spread = potential_spread(n.in_set); spread > 0 && c.request.honeycomb().carbon())
       j[std::string(n.key) + "_potential_error"] = spread * n.value.value;
   }
   j["line_error"] = c.line.error;
@@ -135,7 +139,9 @@ std::string of_this_calibration(const std::string& path, std::string text, bool 
 
 OutputFiles output_files(const CalibrateArguments& a, const CalibrationRequest& request) {
   const Chirality tube = request.chirality;
-  const std::string name = fmt::format("cnt-{}-{}-{}", tube.n, tube.m, request.potential.name);
+  Calibration named;
+  named.request = request;
+  const std::string name = named.name();
   OutputFiles f;
   f.set = a.out.empty() ? name + ".toml" : a.out;
   if (fs::path(f.set).extension() != ".toml")
@@ -148,7 +154,7 @@ OutputFiles output_files(const CalibrateArguments& a, const CalibrationRequest& 
     check_output(table, "--out", a.force || may_be_left_over(f, table, beginning));
   };
   check_table(f.stiffness, fmt::format("# ropewalk-atomistic-1\n# chirality: {},{}\n", tube.n, tube.m));
-  check_table(f.contact, fmt::format("# Surface integral of two ({},{}) tubes, ", tube.n, tube.m));
+  check_table(f.contact, fmt::format("# Surface integral of two {} tubes, ", request.tube()));
   return f;
 }
 
@@ -159,6 +165,7 @@ KnownEnvelope envelope_of(const std::string& name, const CalibrationRequest& req
     throw InputError({set.path, 0, "--envelope-of"}, why, remedy);
   };
   if (set.chirality.n != request.chirality.n || set.chirality.m != request.chirality.m ||
+      set.honeycomb.name != request.honeycomb().name ||
       provenance_value(set, "potential_hash") != request.potential.file_hash)
     refuse("is a set of another tube or potential", "name one of the same, or measure with --envelope");
   const Quantity* kink = find_quantity(set, "validity.kink_curvature");
@@ -203,10 +210,10 @@ void leave_out_unusable_bond(Calibration& c, const std::string& text, const std:
 
 // Grades a new parameter set, from the text that its file will have. Throws InputError for a text that the other
 // commands would refuse, and for a contact law that writing and reading changes. The file is then not written.
-Grade usable_grade(const std::string& text, const std::string& path, Chirality tube) {
+Grade usable_grade(const std::string& text, const std::string& path, const std::string& tube) {
   const auto refuse = [&](const std::string& why) {
     throw InputError({"", 0, "--chirality"},
-                     fmt::format("({},{}) cannot be made a set of rigid circular tubes: {}", tube.n, tube.m, why),
+                     fmt::format("{} cannot be made a set of rigid circular tubes: {}", tube, why),
                      "take a wider tube, or a usual --lj and --lj-cutoff; nothing was written");
   };
   ParameterSet set;
@@ -218,10 +225,11 @@ Grade usable_grade(const std::string& text, const std::string& path, Chirality t
   const Grade grade = grade_of(set);
   if (line_fit_error(set) > unusable_contact) refuse(grade.words());
   const double wall = wall_stiffness(set);
-  if (!(wall >= softest_wall && wall <= stiffest_wall))
+  const WallRange range = wall_range(set.honeycomb);
+  if (!(wall >= range.softest && wall <= range.stiffest))
     throw InputError({"", 0, "--potential"},
-                     fmt::format("makes a wall of {:.4g} N/m, EA/(2 pi r), and one of carbon has {:.0f} to {:.0f}",
-                                 wall, softest_wall, stiffest_wall),
+                     fmt::format("makes a wall of {:.4g} N/m, EA/(2 pi r), and {} has {:.0f} to {:.0f}", wall,
+                                 range.of, range.softest, range.stiffest),
                      "check its parameters and their units, eV and Angstrom; nothing was written");
   return grade;
 }
@@ -286,11 +294,36 @@ void WorkFolder::stay_for(const LammpsError& error) {
   if (temporary_ && names_files) temporary_->keep();
 }
 
+namespace {
+
+Potential potential_of_request(const CalibrateArguments& a) {
+  const bool own = !a.user_potential.empty();
+  Potential named = potential_of_atoms(a.atoms, own ? "" : a.potential);
+  if (!own) return named;
+  Potential out = user_potential(a.user_potential);
+  out.honeycomb = named.honeycomb;
+  out.atoms = named.atoms;
+  out.pairs_reference = named.pairs_reference;
+  out.pairs_doi = named.pairs_doi;
+  return out;
+}
+
+AtomLaw law_of_request(const CalibrateArguments& a, const Honeycomb& honeycomb) {
+  if (honeycomb.carbon()) return parse_atom_law(a.lj.empty() ? law_of_carbon : a.lj, a.lj_cutoff);
+  if (!a.lj.empty())
+    throw InputError({"", 0, "--lj"}, fmt::format("is one law, and {} has one for each pair of species", honeycomb.name),
+                     "change [lennard_jones] in a copy of the file behind --atoms");
+  const PairLaw shell = shell_law(honeycomb.pairs);
+  return parse_atom_law(fmt::format("{},{}", shell.epsilon, shell.sigma), a.lj_cutoff);
+}
+
+}  // namespace
+
 int calibrate_command(const CalibrateArguments& a) {
   CalibrationRequest request;
   request.chirality = parse_chirality(a.chirality);
-  request.law = parse_atom_law(a.lj, a.lj_cutoff);
-  request.potential = a.user_potential.empty() ? find_potential(a.potential) : user_potential(a.user_potential);
+  request.potential = potential_of_request(a);
+  request.law = law_of_request(a, request.honeycomb());
   request.stiffness = a.stiffness;
   if (!two_numbers(a.bend_lengths, request.stiffness.short_length, request.stiffness.long_length))
     throw InputError({"", 0, "--bend-lengths"}, fmt::format("is \"{}\"", printable(a.bend_lengths, 40)),
@@ -319,7 +352,7 @@ int calibrate_command(const CalibrateArguments& a) {
   };
   leave_out_unusable_bond(c, set_text(), files.set);
   const std::string text = set_text();
-  const Grade grade = usable_grade(text, files.set, request.chirality);
+  const Grade grade = usable_grade(text, files.set, request.tube());
   write_files_together({{files.stiffness, of_this_calibration(files.stiffness, stiffness_csv(c), a.force)},
                         {files.contact, of_this_calibration(files.contact, contact_csv(c), a.force)},
                         {files.set, text}});
@@ -332,8 +365,8 @@ int calibrate_command(const CalibrateArguments& a) {
 }
 
 void add_law(CLI::App& app, std::string& lj, double& cutoff) {
-  app.add_option("--lj", lj, "Lennard-Jones epsilon (eV) and sigma (nm) between atoms of two tubes")
-      ->capture_default_str();
+  app.add_option("--lj", lj, fmt::format("Lennard-Jones epsilon (eV) and sigma (nm) between carbon atoms of two tubes "
+                                         "[default: {}]", law_of_carbon));
   app.add_option("--lj-cutoff", cutoff, "Its cutoff (nm), truncated as lj/cut does; 0: none")
       ->capture_default_str();
 }
@@ -342,13 +375,17 @@ void add_calibrate(CLI::App& app, Program& program) {
   const auto a = std::make_shared<CalibrateArguments>();
   a->command = program.command;
   app.add_option("--chirality", a->chirality, "n,m, as in 10,10 or 7,3");
-  app.add_option("--potential", a->potential, "tersoff, airebo, rebo or lcbop")->capture_default_str();
-  app.add_option("--potential-file", a->user_potential, "Your own pair_style and pair_coeff lines, one atom type");
+  app.add_option("--atoms", a->atoms, "C, BN, or a file that names species, potentials and contact of another honeycomb")
+      ->capture_default_str();
+  app.add_option("--potential", a->potential,
+                 "Of carbon: tersoff, airebo, rebo or lcbop; of BN: extep or tersoff [default: the first]");
+  app.add_option("--potential-file", a->user_potential,
+                 "Your own pair_style and pair_coeff lines, an atom type for each species");
   add_law(app, a->lj, a->lj_cutoff);
   app.add_flag("--envelope", a->envelope, "Measure kink, collapse and 1 % limits with LAMMPS (minutes)");
   app.add_option("--envelope-of", a->envelope_of,
                  "Take them from this set of the same tube and potential instead, with the rows of its table");
-  app.add_option("--out", a->out, "Parameter file; its tables lie beside it [default: cnt-N-M-POTENTIAL.toml]");
+  app.add_option("--out", a->out, "Parameter file; its tables lie beside it [default: cnt-N-M-POTENTIAL.toml, bn-...]");
   app.add_option("--keep", a->keep, "Keep LAMMPS's inputs and logs in this new directory");
   app.add_option("--cell-length", a->stiffness.cell_length, "Least length of the periodic cells (nm); 0: chosen")
       ->capture_default_str();

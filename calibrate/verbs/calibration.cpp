@@ -39,6 +39,11 @@ class Quantities {
   void chosen(const std::string& key, double value, const std::string& unit, const std::string& note = "") {
     add(key, value, unit, 0, "chosen", note);
   }
+  void published(const std::string& key, double value, const std::string& unit, const std::string& doi,
+                 const std::string& note) {
+    set_.quantities.push_back(
+        {section_ + "." + key, value, unit, std::nullopt, doi.empty() ? "chosen" : "published", doi, note});
+  }
   void derived(const std::string& key, const Measured& m, const std::string& unit, const std::string& note = "") {
     add(key, m.value, unit, m.standard_error, "derived", note);
   }
@@ -65,6 +70,27 @@ void add_tube(const Calibration& c, Quantities& q) {
   q.calibrated("radius", s.radius, "nm", "mean over the atoms of the relaxed tube");
   q.calibrated("atoms_per_length", s.atoms_per_length, "1/nm", "of the relaxed tube");
   q.chosen("element_length", 2 * s.radius.value, "nm", "2 r; any length will do with the line law");
+}
+
+void add_lattice(const Calibration& c, Quantities& q) {
+  const Honeycomb& h = c.request.honeycomb();
+  if (h.carbon()) return;
+  q.section("lattice");
+  q.chosen("bond_length", h.bond_length(), "nm", "of the flat sheet, with which the relaxation began");
+  q.chosen("weight_1", h.atomic_weight[0], "u", h.species[0]);
+  q.chosen("weight_2", h.atomic_weight[1], "u", h.species[1]);
+  constexpr const char* of[] = {"11", "12", "22"};
+  const Potential& p = c.request.potential;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const PairLaw &law = h.pairs[k], mixed = mixed_law(h.pairs[0], h.pairs[2]);
+    const bool by_rule = k == 1 && law.epsilon == mixed.epsilon && law.sigma == mixed.sigma;
+    const std::string note =
+        fmt::format("{} with {}: {}", h.species[k / 2], h.species[(k + 1) / 2],
+                    by_rule ? "by Lorentz and Berthelot" : p.pairs_reference + "; no partial charges");
+    const std::string doi = by_rule ? "" : p.pairs_doi;
+    q.published(fmt::format("epsilon_{}", of[k]), law.epsilon, "eV", doi, note);
+    q.published(fmt::format("sigma_{}", of[k]), law.sigma, "nm", doi, note);
+  }
 }
 
 void add_bond(const Calibration& c, Quantities& q) {
@@ -102,8 +128,13 @@ void add_line(const Calibration& c, Quantities& q) {
   const std::vector<double>& se = c.line.fit.standard_error;
   const AtomLaw& law = c.request.law;
   q.section("contact.line");
-  q.chosen("epsilon", law.epsilon, "eV", "Lennard-Jones between atoms");
-  q.chosen("sigma", law.sigma, "nm");
+  if (c.request.honeycomb().carbon()) {
+    q.chosen("epsilon", law.epsilon, "eV", "Lennard-Jones between atoms");
+    q.chosen("sigma", law.sigma, "nm");
+  } else {
+    q.derived("epsilon", {law.epsilon, 0}, "eV", "Lennard-Jones between shells: the sum over the pairs of [lattice]");
+    q.derived("sigma", {law.sigma, 0}, "nm");
+  }
   q.chosen("lj_cutoff", std::isfinite(law.cutoff) ? law.cutoff : 0, "nm", "truncated, not shifted; 0: none");
   const Stiffness& s = c.stiffness;
   const double density = s.surface_density();
@@ -184,6 +215,9 @@ void add_atomistic(const Calibration& c, Quantities& q) {
   q.calibrated("energy_per_atom", {s.energy_per_atom, 0}, "eV", "of the relaxed tube");
   q.calibrated("sublattice_turn", {s.sublattice_turn, 0}, "rad", "of the second sublattice against the first");
   q.calibrated("sublattice_rise", {s.sublattice_rise, 0}, "nm", "likewise");
+  if (const Honeycomb& h = c.request.honeycomb(); !h.one_species())
+    q.calibrated("sublattice_lift", {s.sublattice_lift, 0}, "nm",
+                 fmt::format("radius of {} minus that of {}", h.species[1], h.species[0]));
 }
 
 void add_validity(const Calibration& c, Quantities& q) {
@@ -237,13 +271,16 @@ double error_against(const LineFit& direct, const LineDensity& density) {
 std::optional<RegistrySpread> registry_of(const Calibration& c) {
   if (!std::isfinite(c.request.law.cutoff)) return std::nullopt;
   const Chirality tube = c.request.chirality;
-  const double a = graphene_lattice_constant * c.stiffness.radius.value / tube_radius(tube);
+  const Honeycomb& h = c.request.honeycomb();
+  const double a = h.lattice_constant * c.stiffness.radius.value / tube_radius(tube, h.lattice_constant);
   const TubeCell cell = tube_cell(tube, translation_vector(tube), a);
-  const AtomColumn column{cell.atoms, cell.length};
+  AtomColumn column{cell.atoms, cell.length, {}};
+  for (std::size_t k = 0; k < cell.atoms.size(); ++k)
+    column.second.push_back(!h.one_species() && k >= cell.atoms.size() / 2 ? 1 : 0);
   const Shell shell{cell.radius, graphene_density(a)};
   const Well well = parallel_well(c.request.law, shell, shell);
   RegistrySpread s =
-      registry_spread(c.request.law, column, column, well.distance, cell.atoms.size() > 300 ? 300 : 2000);
+      registry_spread(c.request.laws(), column, column, well.distance, cell.atoms.size() > 300 ? 300 : 2000);
   for (double* value : {&s.mean, &s.deviation, &s.least, &s.largest}) *value /= well.energy;
   s.deviation = std::fabs(s.deviation);
   return s;
@@ -267,7 +304,21 @@ void warn(Calibration& c) {
 }  // namespace
 
 std::string Calibration::name() const {
-  return fmt::format("cnt-{}-{}-{}", request.chirality.n, request.chirality.m, request.potential.name);
+  return fmt::format("{}-{}-{}-{}", request.honeycomb().stem(), request.chirality.n, request.chirality.m,
+                     request.potential.name);
+}
+
+std::string CalibrationRequest::tube() const {
+  const std::string nm = fmt::format("({},{})", chirality.n, chirality.m);
+  return honeycomb().carbon() ? nm : nm + " " + honeycomb().name;
+}
+
+SpeciesLaws CalibrationRequest::laws() const {
+  SpeciesLaws all = {law, law, law};
+  if (honeycomb().carbon()) return all;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    all[k] = {honeycomb().pairs[k].epsilon, honeycomb().pairs[k].sigma, law.cutoff};
+  return all;
 }
 
 Calibration calibrate(const CalibrationRequest& request) {
@@ -318,6 +369,8 @@ ContactSummary contact_summary(const Calibration& c) {
 std::string stiffness_csv(const Calibration& c) {
   AtomisticOrigin origin;
   origin.chirality = c.request.chirality;
+  if (const Honeycomb& h = c.request.honeycomb(); !h.carbon())
+    origin.species = fmt::format("{} and {}", h.species[0], h.species[1]);
   origin.potential = c.request.potential.name;
   origin.potential_hash = c.request.potential.file_hash;
   origin.lammps = c.lammps.text;
@@ -326,11 +379,10 @@ std::string stiffness_csv(const Calibration& c) {
 
 std::string contact_csv(const Calibration& c) {
   std::string text = fmt::format(
-      "# Surface integral of two ({},{}) tubes, r = {} nm, {} atoms per nm^2, and the line law fitted to it.\n"
+      "# Surface integral of two {} tubes, r = {} nm, {} atoms per nm^2, and the line law fitted to it.\n"
       "# Lennard-Jones {} eV, {} nm, cutoff {} nm. Units: density eV/nm^2, parallel eV/nm, crossed eV.\n"
       "{}\n",
-      c.request.chirality.n, c.request.chirality.m, c.shell().radius, c.shell().density, c.request.law.epsilon,
-      c.request.law.sigma, c.request.law.cutoff, column_names(contact_columns()));
+      c.request.tube(), c.shell().radius, c.shell().density, c.request.law.epsilon, c.request.law.sigma, c.request.law.cutoff, column_names(contact_columns()));
   const auto curve = [&](const char* kind, const std::vector<ContactPoint>& points) {
     for (const ContactPoint& p : points)
       text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}\n", kind, p.distance, p.angle / units::degree, p.integral,
@@ -346,10 +398,12 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
                            const std::string& contact_file) {
   ParameterSet set;
   set.name = c.name();
+  set.honeycomb = c.request.honeycomb();
   set.chirality = c.request.chirality;
   set.reference = c.request.potential.reference;
   set.doi = c.request.potential.doi;
   Quantities q(set);
+  add_lattice(c, q);
   add_tube(c, q);
   add_bond(c, q);
   add_anharmonic(c, q);
@@ -376,6 +430,7 @@ ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_fi
   set.provenance = {
       {"command", c.request.command},
       {"program", fmt::format("ropewalk {} ({})", version, git_id)},
+      {"atoms", c.request.potential.atoms},
       {"potential", c.request.potential.name},
       {"potential_file", std::filesystem::path(c.request.potential.file).filename().string()},
       {"potential_hash", c.request.potential.file_hash},
@@ -409,11 +464,13 @@ void put_pull(ParameterSet& set, const PullFit& pull) {
 
 std::string parameter_file_comment(const Calibration& c) {
   std::string text = fmt::format(
-      "# Calibrated parameters of the ({},{}) carbon nanotube, {} potential. Made by\n#   {}\n"
+      "# Calibrated parameters of the ({},{}) {} nanotube, {} potential. Made by\n#   {}\n"
       "# Stiffnesses from relaxed atomistic cells (LAMMPS), contact from the surface integral of the "
       "Lennard-Jones\n"
       "# law; the tables named under [provenance] hold every energy that was fitted.\n",
-      c.request.chirality.n, c.request.chirality.m, c.request.potential.name, c.request.command);
+      c.request.chirality.n, c.request.chirality.m,
+      c.request.honeycomb().carbon() ? "carbon" : c.request.honeycomb().name, c.request.potential.name,
+      c.request.command);
   for (const std::string& w : c.warnings) text += "# Warning: " + w + "\n";
   return text;
 }

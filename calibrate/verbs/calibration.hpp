@@ -19,6 +19,11 @@ struct CalibrationRequest {
   StiffnessOptions stiffness;
   std::string folder;   // of LAMMPS's files
   std::string command;  // as typed, for the record
+
+  const Honeycomb& honeycomb() const { return potential.honeycomb; }
+  std::string tube() const;  // "(10,10) BN"; "(10,10)" of carbon
+  // Between the atoms of both species; `law` is what they are together in continuous shells.
+  SpeciesLaws laws() const;
 };
 
 struct Calibration {
@@ -36,7 +41,7 @@ struct Calibration {
   double seconds = 0, paper_seconds = 0;
 
   Shell shell() const { return {stiffness.radius.value, stiffness.surface_density()}; }
-  std::string name() const;  // "cnt-10-10-tersoff"
+  std::string name() const;  // "cnt-10-10-tersoff", "bn-10-10-extep"
 };
 
 // Throws InputError, LammpsError.

@@ -12,9 +12,10 @@ namespace ropewalk::calibrate {
 
 struct CalibrateArguments {
   std::string chirality;
-  std::string potential = "tersoff";
+  std::string atoms = "C";     // or what potential_of_atoms() takes
+  std::string potential;       // empty: the first of these atoms
   std::string user_potential;  // file of pair_style and pair_coeff lines
-  std::string lj = "2.84e-3,0.34";
+  std::string lj;              // empty: that of the atoms
   double lj_cutoff = 1.2;  // nm; 0: none
   bool envelope = false;
   std::string out;   // empty: NAME.toml in the current directory
@@ -52,6 +53,8 @@ struct FrictionArguments {
 int friction_command(const FrictionArguments& arguments);
 
 // --- Shared by the verbs ---
+
+inline constexpr const char* law_of_carbon = "2.84e-3,0.34";
 
 // The options --lj and --lj-cutoff.
 void add_law(CLI::App& app, std::string& lj, double& cutoff);

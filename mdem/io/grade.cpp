@@ -40,15 +40,14 @@ void grade_stiffness(const ParameterSet& set, Grade& grade) {
   }
 }
 
-// Carbon in any potential has 250 to 355 N/m; 23, the ratio of two units of energy, lies far outside.
+// 23, the ratio of two units of energy, lies far outside of the ranges.
 void grade_wall(const ParameterSet& set, Grade& grade) {
   const double wall = wall_stiffness(set);
-  if (wall >= softest_wall && wall <= stiffest_wall) return;
+  const WallRange range = wall_range(set.honeycomb);
+  if (wall >= range.softest && wall <= range.stiffest) return;
   add(grade, Level::unfit,
-      fmt::format(
-          "EA/(2 pi r) is {:.4g} N/m, and a wall of carbon has {:.0f} to {:.0f}: is a unit of the potential "
-          "or of the set wrong?",
-          wall, softest_wall, stiffest_wall));
+      fmt::format("EA/(2 pi r) is {:.4g} N/m, and {} has {:.0f} to {:.0f}: is a unit of the potential or of the set wrong?",
+                  wall, range.of, range.softest, range.stiffest));
 }
 
 void grade_width(const ParameterSet& set, Grade& grade) {
@@ -140,7 +139,7 @@ void grade_shell(const ParameterSet& set, Grade& grade) {
   if (const Quantity* q = find_quantity(set, "atomistic.poisson"))
     ranges.push_back({"poisson", q->value, 0.04, 0.5});
   if (const Quantity* q = find_quantity(set, "atomistic.energy_per_atom"))
-    ranges.push_back({"energy_per_atom (eV)", q->value, -9, -6});
+    ranges.push_back({"energy_per_atom (eV)", q->value, -9, set.honeycomb.carbon() ? -6.0 : -2.0});
   within(ranges, grade);
 }
 

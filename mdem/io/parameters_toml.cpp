@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -53,6 +54,7 @@ class Reader {
     set_.hash = hash_hex(text_);
     set_.filament = top_.has("filament");
     read_meta(top_.table("meta"));
+    if (top_.has("lattice")) read_lattice(top_.table("lattice"));
     if (set_.filament)
       read_filament(top_.table("filament"));
     else
@@ -75,7 +77,7 @@ class Reader {
  private:
   double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
     Quantity out = read_quantity(section, key, unit, bounds);
-    out.of_carbon = !set_.filament;
+    out.of_carbon = !set_.filament && set_.honeycomb.carbon();
     order_.emplace_back(section.line(key), out);
     return out.value;
   }
@@ -117,6 +119,27 @@ class Reader {
       throw t.error("chirality", "is not that of a tube", "write [n, m], neither negative, not both 0");
   }
 
+  void read_lattice(const TomlTable& t) {
+    if (set_.filament)
+      throw top_.error("lattice", "is that of a tube, and the set has [filament]", "take one of them away");
+    Honeycomb& h = set_.honeycomb;
+    h.name = t.string("name");
+    check_name_of_honeycomb(t, "name", h.name);
+    const std::vector<std::string> species = t.strings("species");
+    if (species.size() != 2) throw t.error("species", "are not two", "name those of both sublattices: [\"B\", \"N\"]");
+    for (std::size_t k = 0; k < 2; ++k) {
+      check_element(t, "species", species[k]);
+      h.species[k] = species[k];
+      h.atomic_weight[k] = quantity(t, fmt::format("weight_{}", k + 1), "u", Bounds::range(1, 300));
+    }
+    h.lattice_constant = std::sqrt(3.0) * quantity(t, "bond_length", "nm", Bounds::range(0.1, 0.4));
+    constexpr const char* of[] = {"11", "12", "22"};
+    for (std::size_t k = 0; k < 3; ++k) {
+      h.pairs[k].epsilon = quantity(t, fmt::format("epsilon_{}", of[k]), "eV", Bounds::positive(1));
+      h.pairs[k].sigma = quantity(t, fmt::format("sigma_{}", of[k]), "nm", Bounds::range(0.2, 0.6));
+    }
+  }
+
   // A wrong unit or chirality changes the value by a factor; relaxation changes the rolled sheet by only 2 %.
   void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
     if (std::fabs(value / rolled - 1.0) < 0.1) return;
@@ -127,10 +150,10 @@ class Reader {
 
   void read_tube(const TomlTable& t) {
     set_.radius = quantity(t, "radius", "nm", Bounds::positive());
-    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality), "nm");
+    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality, set_.honeycomb.lattice_constant), "nm");
     set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
-    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality),
-                   "1/nm");
+    check_geometry(t, "atoms_per_length", set_.atoms_per_length,
+                   ropewalk::atoms_per_length(set_.chirality, set_.honeycomb.lattice_constant), "1/nm");
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
   }
 
@@ -264,6 +287,7 @@ class Reader {
     quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
     if (t.has("sublattice_turn")) quantity(t, "sublattice_turn", "rad", Bounds::range(-1, 1));
     if (t.has("sublattice_rise")) quantity(t, "sublattice_rise", "nm", Bounds::range(-0.1, 0.1));
+    if (t.has("sublattice_lift")) quantity(t, "sublattice_lift", "nm", Bounds::range(-0.1, 0.1));
   }
 
   void read_validity(const TomlTable& t) {
@@ -377,11 +401,36 @@ std::string provenance_value(const ParameterSet& set, const std::string& key) {
 }
 
 std::string tube_name(const ParameterSet& set) {
-  return set.filament ? set.name : fmt::format("({},{})", set.chirality.n, set.chirality.m);
+  if (set.filament) return set.name;
+  const std::string nm = fmt::format("({},{})", set.chirality.n, set.chirality.m);
+  return set.honeycomb.carbon() ? nm : nm + " " + set.honeycomb.name;
 }
 
 void refuse_filament(const ParameterSet& set, const std::string& so, const std::string& instead) {
   if (set.filament) throw InputError({set.path, 0, "filament"}, "has no lattice of atoms: " + so, instead);
+}
+
+void refuse_other_than_carbon(const ParameterSet& set, const std::string& what) {
+  if (set.filament || set.honeycomb.carbon()) return;
+  throw InputError({set.path, 0, "lattice"}, fmt::format("is of {}, and {}", set.honeycomb.name, what),
+                   "take a set of a carbon tube");
+}
+
+void check_element(const TomlTable& t, const std::string& key, const std::string& symbol) {
+  const auto letter = [](char c, char from, char to) { return c >= from && c <= to; };
+  if (!symbol.empty() && symbol.size() <= 2 && letter(symbol[0], 'A', 'Z') &&
+      (symbol.size() == 1 || letter(symbol[1], 'a', 'z')))
+    return;
+  throw t.error(key, fmt::format("names \"{}\", which is no element", printable(symbol, 20)),
+                "write symbols, as \"B\" or \"Si\"");
+}
+
+void check_name_of_honeycomb(const TomlTable& t, const std::string& key, const std::string& name) {
+  const bool letters = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+  if (letters && name.size() <= 12 && name != "C") return;
+  throw t.error(key, fmt::format("is \"{}\"", printable(name, 40)),
+                name == "C" ? "carbon is built in: leave its table away"
+                            : "write up to 12 letters and digits, as \"BN\": sets are named by them");
 }
 
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
@@ -447,6 +496,9 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
     if (q.key.substr(0, dot) != section) {
       section = q.key.substr(0, dot);
       text += fmt::format("\n[{}]\n", section);
+      if (section == "lattice")
+        text += fmt::format("name = {}\nspecies = [{}, {}]\n", toml_string(set.honeycomb.name),
+                            toml_string(set.honeycomb.species[0]), toml_string(set.honeycomb.species[1]));
       for (const LawNumbers& law : law_numbers())
         if (law.rows && set.laws.count(law.name)) text += law.rows(set.laws.at(law.name), section);
       if (section == "bond.pull") text += pull_row_text(set);

@@ -130,7 +130,7 @@ CaseResult run_case(const Case& c, const CaseContext& context) {
 
 bool like(const ParameterSet& i, const ParameterSet& j) {
   if (i.filament || j.filament) return i.filament == j.filament && i.name == j.name;
-  return i.chirality.n == j.chirality.n && i.chirality.m == j.chirality.m &&
+  return i.honeycomb.name == j.honeycomb.name && i.chirality.n == j.chirality.n && i.chirality.m == j.chirality.m &&
          provenance_value(i, "potential_hash") == provenance_value(j, "potential_hash");
 }
 
