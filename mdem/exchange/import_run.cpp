@@ -20,6 +20,7 @@
 #include "run/limit_watch.hpp"
 #include "run/moving_scene.hpp"
 #include "run/pending_files.hpp"
+#include "run/period_energies.hpp"
 #include "sim/dynamics/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"

@@ -4,6 +4,7 @@
 
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "run/period_energies.hpp"
 #include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
