@@ -330,7 +330,7 @@ class Import {
   bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // force terms' memory in the last state
-  StateHeader steps_;           // of the last state
+  StateHeader steps_;           // header of the last state: into how many parts steps are divided
   std::vector<TermEvent> events_;  // since the last state that was taken
   std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;

@@ -11,7 +11,7 @@ namespace ropewalk {
 
 // As energies_of_period() of moving_scene.hpp. `now`: the tubes, cut where they have broken; `terms`: eV, of all force
 // terms.
-std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now, const Interaction& interaction,
-                                           const State& state, double terms);
+std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now,
+                                           const Interaction& interaction, const State& state, double terms);
 
 }  // namespace ropewalk
