@@ -20,6 +20,7 @@
 #include "run/limit_watch.hpp"
 #include "run/moving_scene.hpp"
 #include "run/pending_files.hpp"
+#include "run/period_energies.hpp"
 #include "sim/dynamics/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
@@ -329,7 +330,7 @@ class Import {
   bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // force terms' memory in the last state
-  StateHeader steps_;           // of the last state
+  StateHeader steps_;           // header of the last state: into how many parts steps are divided
   std::vector<TermEvent> events_;  // since the last state that was taken
   std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;

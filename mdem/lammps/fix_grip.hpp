@@ -46,11 +46,11 @@ class FixGrip : public LMP::Fix {
   std::shared_ptr<const LammpsModel> model_;
   RankMessages ranks_;
   std::vector<Place> places_;  // places of all loads, sorted by elements
-  // Elements of loads that read others (Load::reads), which every rank knows: numbers in the scene, in rising order, and
-  // their places in the state below. The images of a slice and their originals are so.
+  // Elements of loads that read others (Load::reads), which every rank knows: numbers in the scene, in rising order,
+  // and their places in the state below. The images of a slice and their originals are so.
   std::vector<int> known_, known_at_;
-  std::vector<std::vector<int>> reads_;  // of each load
-  std::vector<double> numbers_;          // of the message
+  std::vector<std::vector<int>> reads_;  // elements that each load reads
+  std::vector<double> numbers_;          // message to all ranks
   // The scene of this rank's driven elements: its element k is atom atom_[k]; -1: another rank has it.
   std::vector<int> atom_;
   Topology topology_;

@@ -6,17 +6,18 @@
 #include <unordered_map>
 #include <utility>
 
+#include "domain.h"
 #include "lammps/bond_vbond.hpp"
 #include "lammps/fix_damp.hpp"
 #include "lammps/fix_grip.hpp"
 #include "lammps/fix_states.hpp"
 #include "lammps/pair_mdem.hpp"
-#include "domain.h"
 #include "neighbor.h"
 #include "output.h"
 #include "scene/lammps_files.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
+#include "timer.h"
 
 namespace ropewalk::lammps {
 namespace {
@@ -85,6 +86,7 @@ FixMotion::~FixMotion() {
 int FixMotion::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
 
 void FixMotion::init() {
+  looked_ = MPI_Wtime();
   check_atoms(lmp, style);
   check_styles(lmp, *model_);
   orientations(lmp);
@@ -149,6 +151,15 @@ void FixMotion::post_integrate() {
 
 void FixMotion::look_at_list(int& signal) {
   if (engine_->stale(signal)) next_reneighbor = update->ntimestep;
+}
+
+void FixMotion::stop_in_time() {
+  if (!may_stop_now()) return;
+  const double now = MPI_Wtime(), took = now - std::exchange(looked_, now);
+  const double left = timer->get_timeout_remain();  // s; 0: there is no such time
+  int ends = left != 0 && left < 1.5 * took ? 1 : 0;
+  MPI_Bcast(&ends, 1, MPI_INT, 0, world);
+  if (ends) timer->force_timeout();
 }
 
 void FixMotion::hand_out() {

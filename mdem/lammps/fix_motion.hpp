@@ -1,6 +1,7 @@
-// What fix mdem/nve (fix_nve.hpp) and fix mdem/relax (fix_relax.hpp) share. Both send orientations to ghosts before the
-// forces are evaluated, check the set-up, and keep the account of energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the
-// energy, the losses, events and beginnings of each force term (sim/forces/force_term.hpp, TermAccount).
+// What fix mdem/nve (fix_nve.hpp) and fix mdem/relax (fix_relax.hpp) share. Both send orientations to ghosts before
+// the forces are evaluated, check the set-up, and keep the account of energy: f_ID[1..9] = time, stretch, shear,
+// bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the energy, the losses, events and beginnings of
+// each force term (sim/forces/force_term.hpp, TermAccount).
 #pragma once
 
 #include <vector>
@@ -65,11 +66,14 @@ class FixMotion : public LMP::Fix {
   void forget_row() { row_step_ = -1; }
   virtual std::optional<double> passes() const { return 0; }  // ps, before the next forces; none: no motion
 
-  // What LAMMPS does between two steps. Whether the engine's list is too old; `signal` becomes the largest of all ranks.
+  // What LAMMPS does between two steps. Whether the engine's list is too old; `signal` becomes the largest of all
+  // ranks.
   void look_at_list(int& signal);
   bool may_stop_now() const {
     return (update->ntimestep - model_->start.step) % lammps_steps_between_stops == 0;
   }
+  // Ends the run at such a step if the time of -var wall is over before the next one. All ranks.
+  void stop_in_time();
   bool exchanged_now() const;
   void hand_out();  // own elements, to LAMMPS's arrays
   void exchange_elements();
@@ -101,6 +105,7 @@ class FixMotion : public LMP::Fix {
   State moved_;  // buffer of move()
   std::vector<double> row_;
   LMP::bigint row_step_ = -1;
+  double looked_ = 0;  // s, since the start of the system: when the last such step was made
   double first_skin_ = 0;  // for a run that goes on: the skin of the list (nm; 0: as the engine chooses)
   // Records of force terms, of each own element and each copy; up to date from before an exchange until the list is
   // built. Lists of numbers as those of sim/forces/force_terms.hpp.

@@ -193,6 +193,7 @@ void FixNve::end() {
 void FixNve::final_integrate() {
   end();
   if (engine_) judge();
+  stop_in_time();
   if (output->next != update->ntimestep) return;
   if (engine_ && engine_->leads()) engine_->give_own();
   if (output->restart_flag && output->next_restart == update->ntimestep) carry();
@@ -251,8 +252,12 @@ void FixNve::mark() {
   for (int i = 0; i < atom->nlocal; ++i) {
     std::vector<double>& to = mark_.elements;
     to.insert(to.end(), {0, static_cast<double>(element_of(*atom, i)), 19});
-    for (const auto& [from, count] :
-         {std::pair{atom->x[i], 3}, {q[i], 4}, {atom->v[i], 3}, {atom->omega[i], 3}, {atom->f[i], 3}, {atom->torque[i], 3}})
+    for (const auto& [from, count] : {std::pair{atom->x[i], 3},
+                                      {q[i], 4},
+                                      {atom->v[i], 3},
+                                      {atom->omega[i], 3},
+                                      {atom->f[i], 3},
+                                      {atom->torque[i], 3}})
       to.insert(to.end(), from, from + count);
   }
   mark_.memory = engine_->memory();
@@ -284,7 +289,8 @@ void FixNve::judge() {
     if (!engine_->leads())
       refuse(lmp,
              "step " + std::to_string(step) + ": the energy balance has not closed since step " +
-                 std::to_string(mark_.step) + ", and beside fixes of others no rank can go back and divide its steps of " +
+                 std::to_string(mark_.step) +
+                 ", and beside fixes of others no rank can go back and divide its steps of " +
                  digits(update->dt / units::fs) + " fs",
              "leave fixes that act on elements out, or set run.time_step_fs to half of that and export again");
     do go_back();
@@ -302,12 +308,12 @@ void FixNve::go_back() {
   failure_ = 0;
   divide(control_.shorten(divided_, mark_.step));
   if (comm->me > 0) return;
-  LMP::utils::logmesg(lmp, digits(failed) + " ps: " + why + "; back to " + digits(now()) + " ps, on with steps of " +
-                               digits(part_step() / units::fs) + " fs\n");
+  LMP::utils::logmesg(lmp, digits(failed) + " ps: " + why + "; back to " + digits(now()) +
+                               " ps, on with steps of " + digits(part_step() / units::fs) + " fs\n");
 }
 
-// Each rank has the elements that were its own at the mark. Their owners of now get them, and LAMMPS exchanges those that
-// are beyond the borders of these.
+// Each rank has the elements that were its own at the mark. Their owners of now get them, and LAMMPS exchanges
+// those that are beyond the borders of these.
 void FixNve::restore() {
   const Slices slices(lmp, model_->topology.elements());
   std::vector<int> own;

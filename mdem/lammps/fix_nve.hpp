@@ -1,9 +1,9 @@
-// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, for translation and rotation, with the bath of
-// [thermostat] and the spins of twist.geometric_only. Steps follow the motion as those of the simulator do
-// (sim/dynamics/step_control.hpp): each rank keeps its elements of the last mark. Where the motion fails on a rank, all
-// of them go back there, and make the steps up to the present one again inside of this step, each in several parts.
-// States and rows of these steps are written again. This needs the engine to lead: where other fixes act on elements,
-// the run ends.
+// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, for translation and rotation, with the bath
+// of [thermostat] and the spins of twist.geometric_only. Steps follow the motion as those of the simulator do
+// (sim/dynamics/step_control.hpp): each rank keeps its elements of the last mark. Where the motion fails on a rank,
+// all of them go back there, and make the steps up to the present one again inside of this step, each in several
+// parts. States and rows of these steps are written again. This needs the engine to lead: where other fixes act on
+// elements, the run ends.
 #pragma once
 
 #include <string>
@@ -46,7 +46,7 @@ class FixNve : public FixMotion {
   // This rank's share of a good state.
   struct Mark {
     LMP::bigint step = -1;  // -1: none
-    EnergyMark energy;      // of all ranks
+    EnergyMark energy;      // sums over all ranks
     EnergySupply account;
     std::vector<double> elements, memory, events;
     double skin = 0;  // nm
@@ -78,13 +78,13 @@ class FixNve : public FixMotion {
   void check();
 
   double time_ = 0;  // ps, in the course of a step
-  int part_ = 0;     // of the step
+  int part_ = 0;     // number of the part of the step, from 0
   bool began_well_ = true;
-  int failure_ = 0;  // of this rank, or of all where they have looked
+  int failure_ = 0;  // Failure of this rank, or the largest of all where they have looked
   Mark mark_;
   bool time_stands_ = false;  // forces are computed again, no time passes
   bool sends_spins_ = false;  // messages bring the orientations that are final
-  std::vector<char> final_;  // whether that of an atom has become so
+  std::vector<char> final_;   // whether that of an atom has become so
 };
 
 }  // namespace ropewalk::lammps

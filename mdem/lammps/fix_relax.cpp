@@ -124,6 +124,7 @@ double FixRelax::largest_force() {
 }
 
 void FixRelax::end_of_step() {
+  stop_in_time();
   if (steps_ % Fire::check_every == 0 && largest_force() < model_->force_tolerance) timer->force_timeout();
 }
 

@@ -154,7 +154,7 @@ class RankEngine {
   Moment moment_;
   struct Spins {
     std::vector<char> known;
-    std::vector<int> place, atom;  // of each atom, and back
+    std::vector<int> place, atom;  // place of each atom, and atom of each place
     std::vector<int> fresh;        // places that have become known
   };
   Spins spins_;

@@ -22,7 +22,8 @@ std::vector<double> Slices::exchange(const std::vector<std::vector<double>>& to)
   return out;
 }
 
-std::vector<double> Slices::bring(const std::vector<double>& records, const std::function<int(int)>& rank_of) const {
+std::vector<double> Slices::bring(const std::vector<double>& records,
+                                  const std::function<int(int)>& rank_of) const {
   std::vector<std::vector<double>> to(static_cast<std::size_t>(lmp_->comm->nprocs));
   for_records(records, [&](int element, const double* of, std::size_t count) {
     const int rank = rank_of(element);
@@ -36,7 +37,8 @@ std::vector<double> Slices::bring(const std::vector<double>& records, const std:
 std::vector<double> Slices::bring_to_owners(const std::vector<double>& records, const std::vector<int>& own) const {
   const int me = lmp_->comm->me;
   std::vector<double> mine;
-  for (const int element : own) mine.insert(mine.end(), {0, static_cast<double>(element), 1, static_cast<double>(me)});
+  for (const int element : own)
+    mine.insert(mine.end(), {0, static_cast<double>(element), 1, static_cast<double>(me)});
   const LMP::bigint first = begin(me);
   std::vector<int> owner(static_cast<std::size_t>(begin(me + 1) - first), -1);
   for_records(bring(mine, [this](int element) { return of(element); }),

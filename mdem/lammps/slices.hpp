@@ -1,5 +1,5 @@
-// Slices of a scene: each rank has as many elements with consecutive numbers. Whoever looks for the owner of an element
-// asks the rank of its slice, so that no rank knows all owners.
+// Slices of a scene: each rank has as many elements with consecutive numbers. Whoever looks for the owner of an
+// element asks the rank of its slice, so that no rank knows all owners.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,8 @@ class Slices {
   }
   // Each rank gets its list. Lists arrive behind one another in the order of the ranks that sent them. All ranks.
   std::vector<double> exchange(const std::vector<std::vector<double>>& to) const;
-  // Records of elements (sim/forces/force_terms.hpp), each to the rank that `rank_of` names; -1: to none. All ranks.
+  // Records of elements (sim/forces/force_terms.hpp), each to the rank that `rank_of` names; -1: to none. All
+  // ranks.
   std::vector<double> bring(const std::vector<double>& records, const std::function<int(int)>& rank_of) const;
   // Records of elements, each to the rank that has the element now, which lists its own elements. All ranks.
   std::vector<double> bring_to_owners(const std::vector<double>& records, const std::vector<int>& own) const;

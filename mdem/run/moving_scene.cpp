@@ -4,18 +4,19 @@
 
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "run/period_energies.hpp"
 #include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 
 std::optional<Energies> energies_of_period(const Simulation& simulation) {
-  return energies_of_period(simulation.topology(), simulation.tubes_now(), simulation.interaction(), simulation.state(),
-                            simulation.forces().energy.terms);
+  return energies_of_period(simulation.topology(), simulation.tubes_now(), simulation.interaction(),
+                            simulation.state(), simulation.forces().energy.terms);
 }
 
-std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now, const Interaction& interaction,
-                                           const State& s, double terms) {
+std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now,
+                                           const Interaction& interaction, const State& s, double terms) {
   if (topology.groups.images == 0) return std::nullopt;
   const std::vector<double> contacts = contact_energies(topology, interaction, s);
   Energies out;

@@ -12,9 +12,6 @@ namespace ropewalk {
 // Energies of one period of a slice: bonds that begin with an element of its own, half of each contact that such an
 // element has, and as large a share of the force terms as its elements are of all. None: no slice.
 std::optional<Energies> energies_of_period(const Simulation& simulation);
-// The same of a state, with its tubes as they are now; `terms`: eV, of all force terms.
-std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now, const Interaction& interaction,
-                                           const State& state, double terms);
 
 // Without the forces at the ends and without the period of a slice, which costs as much as some steps. `first`,
 // `first_energy` (eV): potential and total energy at the start.

@@ -125,8 +125,8 @@ void refuse_what_lammps_lacks(const Scene& scene) {
       for (const auto& drive : scene.drives)
         if (lacking.key.empty() && drive->table().name == name)
           lacking = {name,
-                     "images of a slice remember what their originals do, which other ranks have; a rope of ten periods "
-                     "between grips, whose middle is as a slice, takes ten times as long a step"};
+                     "images of a slice remember what their originals do, which other ranks have; a rope of ten "
+                     "periods between grips, whose middle is as a slice, takes ten times as long a step"};
   if (lacking.key.empty() && scene.run.stepping.runge_kutta)
     lacking = {"run.integrator", "it evaluates forces once in a step"};
   if (lacking.key.empty() && scene.run.solver != RunOptions::Solver::fire)
@@ -280,15 +280,14 @@ std::string lammps_input(const LammpsScript& s) {
       "variable steps index {}\n"
       "variable last equal {}+${{steps}}\n"
       "variable every index {}\n"
-      "if \"$(is_defined(variable,wall)) == 1\" then \"timer timeout ${{wall}} every {}\"  # seconds, or "
-      "hours:minutes:seconds\n"
+      "if \"$(is_defined(variable,wall)) == 1\" then \"timer timeout ${{wall}}\"  # seconds, or hours:minutes:seconds\n"
       "units lj\n"
       "atom_style hybrid sphere bond\n"
       "boundary m m m\n"
       "newton on\n"
       "special_bonds lj/coul {} {} {}\n"
       "comm_modify mode single vel yes cutoff {}\n",
-      lammps_comment(s.name), s.steps, s.first_step, s.every, lammps_steps_between_stops, weight(1), weight(2), weight(3), s.reach + s.skin);
+      lammps_comment(s.name), s.steps, s.first_step, s.every, weight(1), weight(2), weight(3), s.reach + s.skin);
   text += s.long_in_z ? "processors 1 1 *  # ropes lie along z: every cut is across them\n" : "comm_style tiled\n";
   text += fmt::format(
       "region box block {} {} {} {} {} {}\n"

@@ -71,8 +71,8 @@ void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology&
 // Sets the images of a slice. Throws likewise.
 void set_slice(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology);
 
-// Steps between two looks at the wall time. There elements are exchanged and lists are built, whether the run stops or
-// not, so that a job that goes on has the same bits.
+// At such steps since the export elements are exchanged and lists are built in any case. A job stops there if its time
+// is over before the next such step, so that the one that goes on has the same bits.
 inline constexpr int lammps_steps_between_stops = 512;
 
 // The facts that the input script needs.

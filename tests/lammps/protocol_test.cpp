@@ -207,7 +207,8 @@ TEST_F(LammpsRun, TheImagesOfASliceFollowAsHere) {
                      200, 1e-10);
   const Outcome here = run("run scene.toml --out here --steps 200 --quiet");
   ASSERT_EQ(run("import out-2").code, 0) << slurp(dir / "stderr.txt");
-  const LogRow a = read_log((dir / "here/log.csv").string()).back(), b = read_log((dir / "out-2/log.csv").string()).back();
+  const LogRow a = read_log((dir / "here/log.csv").string()).back();
+  const LogRow b = read_log((dir / "out-2/log.csv").string()).back();
   ASSERT_EQ(a["step"], b["step"]) << here.err;
   for (const char* name : {"stored_MJ_per_kg", "ends_apart_nm", "vdw_eV"})
     EXPECT_NEAR(a[name], b[name], 1e-9 * std::fmax(1, std::fabs(a[name]))) << name;
@@ -650,7 +651,8 @@ TEST_F(LammpsRun, ARankSendsAndHoldsNoMoreWhereThereAreMoreOfThem) {
     for (std::size_t at = 0; (at = o.out.find(" bytes, ", at)) != std::string::npos; ++at, ++told) {
       const std::size_t number = o.out.rfind(": ", at) + 2;
       Largest of;
-      ASSERT_EQ(std::sscanf(o.out.c_str() + number, "%lld bytes, %lld messages, %lld", &of.sent, &of.messages, &of.held), 3);
+      const char* const text = o.out.c_str() + number;
+      ASSERT_EQ(std::sscanf(text, "%lld bytes, %lld messages, %lld", &of.sent, &of.messages, &of.held), 3);
       Largest& all = largest[ranks];
       all = {std::max(all.sent, of.sent), std::max(all.messages, of.messages), std::max(all.held, of.held)};
     }
@@ -785,7 +787,8 @@ TEST_F(LammpsRun, StepsFollowTheMotionAsHere) {
     ASSERT_EQ(o.code, 0) << o.err;
     EXPECT_NE(o.out.find("5 states taken over, up to step 300"), std::string::npos) << o.out;
     const LogRow row = read_log((dir / there / "log.csv").string()).back();
-    for (const char* name : {"time_ps", "stretch_eV", "bend_eV", "twist_eV", "vdw_eV", "kinetic_eV", "work_eV", "dissipated_eV"})
+    for (const char* name :
+         {"time_ps", "stretch_eV", "bend_eV", "twist_eV", "vdw_eV", "kinetic_eV", "work_eV", "dissipated_eV"})
       EXPECT_NEAR(row[name], last[name], 1e-8 * std::fmax(1, std::fabs(last[name]))) << name;
     // `resume` goes on with steps as short.
     o = run("resume " + there + " --quiet --steps 320");

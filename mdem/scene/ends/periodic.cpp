@@ -384,7 +384,8 @@ void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
   double lowest_own = far, highest_own = -far, images_from = -far, images_to = far;
   std::size_t k = 0, first = 0;
   for_images(topology, [&](int image, int original, double sign) {
-    const double z = s.position.z[static_cast<std::size_t>(image)], own_z = s.position.z[static_cast<std::size_t>(original)];
+    const double z = s.position.z[static_cast<std::size_t>(image)],
+                 own_z = s.position.z[static_cast<std::size_t>(original)];
     const int place = static_cast<int>(k) % images;  // from the end of the strand
     if (place == 0 && sign < 0 && z > images_from) first = k;
     if (place == 0 && sign < 0) images_from = std::max(images_from, z);

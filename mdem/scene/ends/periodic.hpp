@@ -99,7 +99,7 @@ class PeriodicLoad : public Load {
   Schedule schedule_;            // course of tau, smoothed
   Schedule stretched_, pulled_;  // courses of strain, smoothed, and of tension
   EndElements ends_;
-  std::vector<int> numbers_;  // on several processes: those of the images in the scene
+  std::vector<int> numbers_;  // numbers of the images in the scene, on several processes
   double period_ = 0, reach_ = 0;  // nm
 };
 
@@ -122,8 +122,8 @@ class PeriodicDrive : public Drive {
   NotForLammps not_for_lammps() const override {
     if (load.tension.empty()) return {};
     return {"periodic.tension_nN",
-            "the period then moves by the forces on all images, which several ranks have; a rope of ten periods between "
-            "grips, whose middle is as a slice, takes ten times as long a step"};
+            "the period then moves by the forces on all images, which several ranks have; a rope of ten periods "
+            "between grips, whose middle is as a slice, takes ten times as long a step"};
   }
 };
 

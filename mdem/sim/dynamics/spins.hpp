@@ -15,7 +15,7 @@ bool relaxes_spins_at(double time, double step, double interval);
 // goes on from a copy of the last one of them.
 std::vector<int> middles_of_tubes(const Topology& scene, const Topology& here);
 std::vector<int> follow_spins(const Topology& topology, std::vector<char>& known, State& state);
-// Of own elements.
+// Own elements no longer turn about their axes.
 void take_spin_velocities_away(const Topology& topology, State& state);
 
 }  // namespace ropewalk
