@@ -120,7 +120,8 @@ struct Stiffness {
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
-  double sublattice_turn = 0, sublattice_rise = 0;  // rad and nm, of the second one in the relaxed tube
+  // rad and nm, of the second one in the relaxed tube; the lift is its radius minus that of the first one.
+  double sublattice_turn = 0, sublattice_rise = 0, sublattice_lift = 0;
   double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
   Measured stretch_cubic;  // eV/nm, of e^3
@@ -148,6 +149,7 @@ Envelope scaled_envelope(double radius);
 // The head of a table, one "# key: value" line each.
 struct AtomisticOrigin {
   Chirality chirality;
+  std::string species;  // "B and N"; empty: carbon
   std::string potential, potential_hash, lammps;
   std::vector<std::string> notes;
 };

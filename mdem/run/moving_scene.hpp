@@ -5,13 +5,16 @@
 
 #include "io/limits_file.hpp"
 #include "run/run_directory.hpp"
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 
 namespace ropewalk {
 
 // Energies of one period of a slice: bonds that begin with an element of its own, half of each contact that such an
 // element has, and as large a share of the force terms as its elements are of all. None: no slice.
 std::optional<Energies> energies_of_period(const Simulation& simulation);
+// The same of a state, with its tubes as they are now; `terms`: eV, of all force terms.
+std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now, const Interaction& interaction,
+                                           const State& state, double terms);
 
 // Without the forces at the ends and without the period of a slice, which costs as much as some steps. `first`,
 // `first_energy` (eV): potential and total energy at the start.
@@ -27,6 +30,8 @@ struct MovingScene {
   bool relaxes() const { return scene.run.mode == RunOptions::Mode::relax; }
   EnergyAccount account() const { return account_of(simulation, first, first_energy); }
   EnergyParts energies() const;
+  bool looks_closely() const { return control.looks_closely(simulation.divided(), simulation.step_count()); }
+  void lengthen_steps() { simulation.divide_steps(control.lengthen(simulation.divided(), simulation.step_count())); }
   // All observables. Forces at the ends are means since the last row.
   LogRow row();
 
