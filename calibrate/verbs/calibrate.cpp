@@ -334,10 +334,10 @@ void WorkFolder::stay_for(const LammpsError& error) {
 namespace {
 
 Potential potential_of_request(const CalibrateArguments& a) {
-  const bool own = !a.user_potential.empty();
-  Potential named = potential_of_atoms(a.atoms, own ? "" : a.potential);
-  if (!own) return named;
+  if (a.user_potential.empty()) return potential_of_atoms(a.atoms, a.potential);
   Potential out = user_potential(a.user_potential);
+  if (a.atoms == "C") return out;
+  const Potential named = potential_of_atoms(a.atoms, "");
   out.honeycomb = named.honeycomb;
   out.atoms = named.atoms;
   out.pairs_reference = named.pairs_reference;
