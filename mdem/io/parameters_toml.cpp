@@ -61,7 +61,7 @@ class Reader {
     else
       read_tube(top_.table("tube"));
     read_bond(top_.table("bond"));
-    if (!set_.walls.empty()) read_holding(top_.table("meta"), top_.table("held"));
+    if (!set_.walls.empty()) read_holding(top_.table("held"));
     const TomlTable contact = top_.table("contact");
     for (const LawNumbers& law : law_numbers())
       if (contact.has(law.name)) set_.laws[law.name] = law.read({contact.table(law.name), set_, number_of_law()});
@@ -193,7 +193,7 @@ class Reader {
   }
 
   // The tube by both ways of holding it, of which the bond has one.
-  void read_holding(const TomlTable& meta, const TomlTable& t) {
+  void read_holding(const TomlTable& t) {
     for (const char* way : {"all", "outer"}) {
       const TomlTable own = t.table(way);
       const bool used = set_.outer_carries == (way == std::string("outer"));
@@ -202,7 +202,7 @@ class Reader {
                                             std::tuple{"GJ", "nN nm^2", set_.bond.twist}}) {
         const double value = quantity(own, key, unit, Bounds::positive(1e9));
         if (used && std::fabs(bond / (value * units::nN_nm) - 1) > 1e-6)
-          throw meta.error("carried_by", fmt::format("is \"{}\", and bond.{} is not that of [held.{}]", way, key, way),
+          throw top_.table("meta").error("carried_by", fmt::format("is \"{}\", and bond.{} is not that of [held.{}]", way, key, way),
                            fmt::format("write bond.{} = {} {}", key, value, unit));
       }
     }
