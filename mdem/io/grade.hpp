@@ -27,7 +27,7 @@ Grade grade_of(const ParameterSet& set);
 
 // EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.
 double wall_stiffness(const ParameterSet& set);
-inline constexpr double softest_wall = 200, stiffest_wall = 500;  // N/m, of carbon
+inline constexpr double softest_wall = 200, stiffest_wall = 500;  // stiffness of a wall of carbon, N/m
 
 // Largest error of the set's own line law against the surface integral, over the well, as the set states it.
 // Negative: it states none.

@@ -122,7 +122,7 @@ class FixNve : public FixMotion {
   void mark();
   void judge();
 
-  double time_ = 0;  // ps, in the course of a step
+  double time_ = 0;  // time in the course of a step, ps
   EnergyMark mark_;
   LMP::bigint marked_at_ = 0;
 };
@@ -150,7 +150,7 @@ class FixRelax : public FixMotion {
   Fire fire_;
   double radius_ = 0, scale2_ = 0;
   long steps_ = 0;
-  double last_ = 0;  // ps, of the last step
+  double last_ = 0;  // length of the last step, ps
 };
 
 }  // namespace ropewalk::lammps

@@ -24,8 +24,8 @@ struct StateHeader {
   std::int64_t step = 0, elements = 0;
   double time = 0;                  // ps
   double work = 0, dissipated = 0;  // eV
-  double heat = 0;                  // eV, from the thermostat
-  double skin = 0;                  // nm, of the neighbour list; 0: there was none
+  double heat = 0;                  // heat from the thermostat, eV
+  double skin = 0;                  // skin of the neighbour list, nm; 0: there was no list
   std::int64_t memory = 0;          // numbers behind the records, of the force terms
 };
 static_assert(sizeof(StateHeader) == 72, "this is the format of the file");
