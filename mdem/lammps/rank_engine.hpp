@@ -105,7 +105,7 @@ class RankEngine {
   double damping_power() const { return forces_.damping_power; }                  // eV/ps
   const std::vector<double>& term_energy() const { return forces_.term_energy; }  // energy of each force term
   std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }  // this rank's share
-  double lost() const { return forces_.lost; }  // eV, by force terms whose memory has moved on
+  double lost() const { return forces_.lost; }  // energy lost by force terms whose memory has moved on, eV
   int slipping_element() const;                 // number in the scene; -1: none
   // xx, yy, zz, xy, xz, yz of separation times force, without damping.
   std::array<double, 6> virial(Parts parts);
@@ -147,10 +147,10 @@ class RankEngine {
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
   std::vector<Change> changes_;                                  // change of each of moved_
-  std::vector<Fastest> fastest_of_;                              // likewise, in the last move
+  std::vector<Fastest> fastest_of_;                              // fastest element of each of moved_ in the last move
   Fastest fastest_;
   NeighbourList list_;
-  long steps_ = 0;  // since the list was built
+  long steps_ = 0;  // steps since the list was built
   Moment moment_;
   struct Spins {
     std::vector<char> known;

@@ -116,7 +116,7 @@ struct ParameterSet {
   bool outer_carries = false;     // several walls: the outer one alone carries stretch and torsion
   double radius = 0;              // nm: of the wall of a tube, its contact radius too; contact_radius of a filament
   double atoms_per_length = 0;    // 1/nm; 0 for a filament
-  double mass_per_length = 0;     // eV ps^2/nm^3, of a filament
+  double mass_per_length = 0;     // mass per length of a filament, eV ps^2/nm^3
   double element_length = 0;    // nm
   BondStiffness bond;           // eV/nm, eV nm; harmonic
   std::optional<Anharmonic> anharmonic;

@@ -104,7 +104,7 @@ struct Watched {
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
   // The pressure on every tube of a state, eV/nm^3; none: not watched.
   std::function<std::vector<double>(const State&)> pressures = {};
-  double twist_energy = 0;      // eV, of the tubes under the whole moment; 0: a shock is not watched
+  double twist_energy = 0;      // twist energy of the tubes under the whole moment, eV; 0: a shock is not watched
   std::vector<Held> held = {};  // of each element of the scene; empty: all are free
 };
 

@@ -173,7 +173,7 @@ class DepthBuffer {
 
   double size_of(const Segment& s) const { return sizes_[static_cast<std::size_t>(s.size)]; }
 
-  std::vector<double> sizes_;  // half the strokes behind tubes, nm
+  std::vector<double> sizes_;  // half widths of the strokes that are drawn behind tubes, nm
   double radius_;              // the largest
   double x0_ = 0, y0_ = 0, cell_ = 1;
   int columns_ = 0, rows_ = 0;
@@ -247,7 +247,7 @@ using Paths = std::map<Key, std::string>;
 struct Painter {
   const RopeCamera& camera;
   const std::vector<double>& sizes;  // nm
-  double radius;                     // nm, of the thickest tube of all views
+  double radius;                     // radius of the thickest tube of all views, nm
   double top;                        // nm: upper edge
   double tolerance;                  // hundredths of a nanometre
 

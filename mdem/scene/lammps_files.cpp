@@ -376,7 +376,7 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
-      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // not of version 0.3.0
+      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // files of version 0.3.0 do not have it
     }
     for (double* value : values) {
       if (!take(line, *value))

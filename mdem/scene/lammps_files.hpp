@@ -33,7 +33,7 @@ struct LammpsStart {
   double period = 0;                                // nm, TubeGroups::period
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
-  std::vector<std::string> parameters;              // files, of each tube type
+  std::vector<std::string> parameters;              // a file for each tube type
   std::map<std::string, std::string> sums;          // sum of each LAMMPS file, by name; empty: an older export
 };
 
@@ -98,7 +98,7 @@ struct LammpsRow {
   double step = 0, time = 0;
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
   double work = 0, dissipated = 0, heat = 0;
-  std::vector<double> terms;          // eV, of each force term
+  std::vector<double> terms;          // energy of each force term, eV
   std::vector<TermAccount> accounts;  // likewise
 };
 inline constexpr int lammps_row_numbers = 10;     // without the step and the terms

@@ -25,8 +25,8 @@ struct StateHeader {
   std::int64_t step = 0, elements = 0;
   double time = 0;                  // ps
   double work = 0, dissipated = 0;  // eV
-  double heat = 0;                  // eV, from the thermostat
-  double skin = 0;                  // nm, of the neighbour list; 0: there was none
+  double heat = 0;                  // heat from the thermostat, eV
+  double skin = 0;                  // skin of the neighbour list, nm; 0: there was no list
   std::int64_t memory = 0;          // numbers behind the records, of the force terms
   // Into how many parts steps are divided, and StepControl's numbers.
   std::int64_t divided = 1, kept_until = 0, keep = StepControl::least_keep;

@@ -55,7 +55,7 @@ TEST_P(LineFitAt, IsTheIntegral) {
   FitOptions options;
   options.starts = 3;
   const LineFit f = fit_line({}, shell(ri), shell(rj), options);
-  // (4,4), at 0.27 nm, and thinner: the cutoff's kinks lie in the tail.
+  // For (4,4), with a radius of 0.27 nm, and thinner tubes the kinks of the cutoff lie in the tail of the law.
   expect_near_integral(f, ri + rj < 0.67 ? 2.5e-3 : 2e-3);
   EXPECT_EQ(f.density.contact, ri + rj);
   for (const double e : f.fit.standard_error) EXPECT_GT(e, 0);

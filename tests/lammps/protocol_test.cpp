@@ -409,7 +409,7 @@ TEST_F(LammpsEvents, LinksOfTheStartBreakAsHere) {
   expect_equal_events(linked_scene("per_nm = 0.4\nbreaks_at_eV = 0.01\n"), {{"link formed", 200}, {"link broke", 10}});
 }
 
-// Placed on the way, at ends too, and then formed all the time, as long as elements have room for them.
+// Links are placed during the run, at ends too, and form from then on wherever an element has room for one.
 TEST_F(LammpsEvents, LinksFormAndBreakAsHere) {
   expect_equal_events(linked_scene("per_nm = 0.2\nat_ends = 1\nplaced_at_ps = 0.5\nforming_per_nm_ps = 0.3\n"
                                    "most_per_nm = 0.6\nbreaks_at_nN = 0.04\n"),

@@ -81,7 +81,7 @@ class EndContact {
   }
 
  private:
-  static constexpr double nearest = 0.1, spacing = 0.01;  // nm, of the table
+  static constexpr double nearest = 0.1, spacing = 0.01;  // first gap and spacing of the table, nm
   static constexpr double without_cutoff = 4;             // sigma
   static constexpr int turns = 128;                       // values of theta in half a circle
 

@@ -198,7 +198,7 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
 
 namespace {
 
-// nm, of the axes of the outermost tubes from that of the rope.
+// Distance of the axes of the outermost tubes from that of the rope, nm.
 double rim_of(const Scene& scene, const Interaction& interaction) {
   const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
   if (!rope) return 0;
@@ -302,7 +302,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, doub
   }
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;
-  double stiffness = 0;  // eV/nm, of all strands
+  double stiffness = 0;  // stiffness of all strands, eV/nm
   for (int s = 0; s < topology.strands(); ++s)
     stiffness += topology
                      .type_of(topology.groups.strand_begin.empty()

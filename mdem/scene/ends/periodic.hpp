@@ -33,10 +33,10 @@ class PeriodicLoad : public Load {
  public:
   int images = 0;                        // elements at each end of a tube; 0: as the contact needs
   std::vector<Schedule::Point> twist;    // rad/nm; from the start, or chosen by turns
-  std::vector<Schedule::Point> turns;    // 1/nm, of a yarn whose surface has the angle of this one; none: by twist
+  std::vector<Schedule::Point> turns;    // turns of a yarn with the angle of this one at its surface, 1/nm; none: by twist
   double yarn_diameter = 0;              // nm; 0: none is typed
   std::vector<Schedule::Point> strain;   // of the period; none: it stays
-  std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
+  std::vector<Schedule::Point> tension;  // tension of the rope, eV/nm; none: its length is prescribed at all times
 
   // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres; `rim`
   // (nm): where the axes of the outermost tubes stand, for turns. Throws InputError where the images do not reach

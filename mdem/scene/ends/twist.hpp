@@ -27,7 +27,7 @@ class TwistLoad : public Load {
  public:
   enum class Application { couple, follower, conservative, tangential };
   enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
-  double moment = 0;                       // eV, in its reading, at the end of the ramp
+  double moment = 0;                       // moment at the end of the ramp, in its reading, eV
   double rate = 0;                         // eV/ps; 0: it acts at once
   double hold = 0;                         // ps after the ramp
   double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays

@@ -14,7 +14,7 @@ inline constexpr std::int64_t account_window = 128;
 
 // The account of energy at one time.
 struct EnergyMark {
-  double energy = 0;  // eV, in all; NaN where it is not known
+  double energy = 0;  // total energy, eV; NaN: it is not known
   EnergySupply supply;
 };
 EnergyMark energy_mark(const Simulation& simulation);

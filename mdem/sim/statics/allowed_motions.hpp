@@ -37,7 +37,7 @@ namespace ropewalk {
 
 class AllowedMotions {
  public:
-  // At the state of the simulation.
+  // The motions that are allowed at the present state of the simulation.
   explicit AllowedMotions(const Simulation& s);
 
   // Mass of each unknown; images have none.
@@ -71,7 +71,7 @@ class AllowedMotions {
   double force_on_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd without_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd stretch() const;
-  // Makes it a motion in which the period stays.
+  // Takes the change of the period out of the motion.
   void let_period_stay(Eigen::VectorXd& u) const;
 
   // eV: the largest sum of the torques about its axis, of tubes whose spin is neutral.

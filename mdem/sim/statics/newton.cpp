@@ -292,7 +292,7 @@ VectorXd NewtonStatics::led(double passes) const {
 
 // The rest of the rope follows by (K + s M) d = f + change of the loads - K u, where constraints lead by u.
 bool NewtonStatics::follow_once(const At& at, double until) {
-  constexpr double least_shift = 0.01, most_shift = 100;  // 1/ps, of the root
+  constexpr double least_shift = 0.01, most_shift = 100;  // shift of the root, 1/ps
   double passes = until - s_.time();
   const VectorXd loads = load_forces(s_.loads(), s_.state());
   for (int tries = 0; tries < most_tries; ++tries) {

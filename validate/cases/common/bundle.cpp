@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "model/contact/line_parameters.hpp"
-#include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
 
@@ -44,12 +43,17 @@ double rope_energy(const WallsIntegral& integral, int tubes, double spacing) {
   return sum;
 }
 
+void Bundle::place(const ParameterSet& set, int elements, const Places& places) {
+  BuiltScene built = straight_tubes(set, elements, places);
+  topology = std::move(built.topology);
+  state = std::move(built.state);
+}
+
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   Bundle b;
-  b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
   b.spacing = line_parallel_well(set.law<LineParameters>()->density).distance;
-  add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
+  b.place(set, elements, hexagonal_lattice(tubes, b.spacing));
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;
 }

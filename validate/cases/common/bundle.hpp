@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cases/common/chain.hpp"
+#include "cases/common/straight_tubes.hpp"
 #include "contact/integral.hpp"
 #include "model/contact/line_parameters.hpp"
 
@@ -15,8 +16,8 @@ LineContact line_contact_of(const ParameterSet& set);
 // The surface integral that the set's line law was fitted to: Lennard-Jones law, radius and surface density.
 WallsIntegral surface_integral(const ParameterSet& set);
 
-// The well of two parallel tubes: that of the surface integral. A filament has no atoms to integrate over; its own law
-// is all that is known of its contact.
+// The well of two parallel tubes: that of the surface integral. A filament has no atoms to integrate over; its own
+// law is all that is known of its contact.
 Well pair_well(const ParameterSet& set);
 
 // Energy per length (eV/nm) of a straight hexagonal rope of this spacing (nm): the sum of the integral over all
@@ -30,6 +31,8 @@ struct Bundle {
   State state;
   double spacing = 0;    // nm
   double time_step = 0;  // ps
+
+  void place(const ParameterSet& set, int elements, const Places& places);  // straight_tubes()
 };
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements);
 // Relaxes it, and takes its velocities away.

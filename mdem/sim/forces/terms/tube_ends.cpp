@@ -11,7 +11,7 @@ namespace {
 // Two ends that meet: their elements and their contact.
 struct EndJoint {
   int below = 0, above = 0;
-  double half_below = 0, half_above = 0;  // nm, of the elements
+  double half_below = 0, half_above = 0;  // half lengths of the elements, nm
   std::size_t contact = 0;
 };
 

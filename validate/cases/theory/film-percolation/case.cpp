@@ -114,7 +114,7 @@ struct Relaxed {
   double length = 0;
   double contacts = 0, kept = 0, made = 0;  // of a tube at the start; the part of these that stays; of a tube, new
   double before = 0, after = 0;             // thresholds by the order of laying
-  double energy = 0, crossings = 0;         // eV, at the start: of the model, of all crossings by the integral
+  double energy = 0, crossings = 0;         // energy at the start, eV: of the model, and of all crossings by the integral
 };
 
 // Energy of all crossings of tubes of a film, each as that of two endless tubes.

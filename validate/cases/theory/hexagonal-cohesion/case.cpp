@@ -12,7 +12,7 @@ double vdw_energy(const ParameterSet& set, int tubes, int elements) {
   return Simulation(b.topology, b.interaction, {}, b.state, b.time_step).forces().energy.vdw;
 }
 
-// eV/nm, by the difference of two lengths, which has no ends in it.
+// Energy per length (eV/nm) as the difference of two lengths, which has no ends in it.
 double energy_per_length(const ParameterSet& set, int tubes) {
   return (vdw_energy(set, tubes, 16) - vdw_energy(set, tubes, 8)) / (8 * set.element_length);
 }
