@@ -110,7 +110,7 @@ TEST(Honeycomb, AtomsOfTwoSpeciesAttractAsTheIntegralSays) {
 }
 
 // Types, masses and the lift of a relaxed tube. Both ends of a bond of boron nitride are alike by its potentials: no
-// lift. Of silicon carbide silicon lies inside.
+// lift. Of silicon carbide silicon lies outside.
 TEST(Honeycomb, RelaxedTubeHasItsSpeciesAndTheirLift) {
   const TemporaryFolder folder;
   std::string text = shipped_text;
