@@ -3,8 +3,7 @@
 //
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
-//   [lattice]   optional, of what is no carbon: name, species = ["B", "N"] of the two sublattices, bond_length (nm,
-//   of
+//   [lattice]   optional, of what is no carbon: name, species = ["B", "N"] of the two sublattices, bond_length (nm, of
 //               the flat sheet), weight_1, weight_2 (u), and the Lennard-Jones laws between the atoms of two tubes:
 //               epsilon_11, epsilon_12, epsilon_22 (eV), sigma_11, sigma_12, sigma_22 (nm)
 //   [filament]  in place of [tube] and meta.chirality, for anything slender without a lattice:
@@ -24,8 +23,8 @@
 //               io/laws/paper.cpp, io/laws/line.cpp
 //   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn
 //   (rad),
-//               sublattice_rise and sublattice_lift (nm): how far the second sublattice has moved against the
-//               first, around, along and off the axis
+//               sublattice_rise and sublattice_lift (nm): how far the second sublattice has moved against the first,
+//               around, along and off the axis
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
 //               off
