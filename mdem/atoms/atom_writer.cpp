@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t buffer_size = 1 << 20;
 
-// The type of the first sublattice of each part, from 1; that of the second is the next where it is another species.
+// The type of the first sublattice of each part, from 1; that of the second is the next where it is another
+// species.
 std::vector<int> first_types(const AtomsOfElements& atoms, std::string& masses) {
   std::vector<int> first;
   int type = 0;
@@ -38,8 +39,7 @@ void append_head(fmt::memory_buffer& out, AtomFormat format, const AtomsOfElemen
   }
   Vector3 low, high;
   atoms.bounds(low, high);
-  fmt::format_to(to, "{}\n\n{} atoms\n{} atom types\n\n", lammps_comment(title), atoms.count(),
-                 types);
+  fmt::format_to(to, "{}\n\n{} atoms\n{} atom types\n\n", lammps_comment(title), atoms.count(), types);
   for (int k = 0; k < 3; ++k)
     fmt::format_to(to, "{0:.6f} {1:.6f} {2}lo {2}hi\n", low[k] / angstrom, high[k] / angstrom, "xyz"[k]);
   fmt::format_to(to, "\nMasses\n\n{}\nAtoms # molecular\n\n", masses);

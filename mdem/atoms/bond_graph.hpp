@@ -19,7 +19,8 @@ class BondGraph {
  public:
   static constexpr int most = 4;
 
-  // The graph of the atoms with a flag, of which those nearer than `bond` (nm) are bonded. Throws InputError at `file` where two of them overlap or the box is too short.
+  // The graph of the atoms with a flag, of which those nearer than `bond` (nm) are bonded. Throws InputError at
+  // `file` where two of them overlap or the box is too short.
   BondGraph(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box,
             const std::string& file, double bond = carbon_bond);
 

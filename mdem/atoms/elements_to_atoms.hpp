@@ -66,7 +66,7 @@ struct TubePart {
 
 struct PlacedAtom {
   int part = 0, tube = 0, element = 0;  // element: counted in the tube
-  bool second = false;                  // of the second sublattice
+  bool second = false;                  // whether the atom is of the second sublattice
   Vector3 position;                     // nm
 };
 

@@ -95,13 +95,12 @@ class Search {
     for (std::size_t i = 0; i < raw_.size(); ++i)
       if (species_[i] && !seen[i]) wall(connected(i, seen));
     if (found_.tubes.empty())
-      throw InputError(
-          {file_, 0, ""}, fmt::format("has no {} nanotube in it", name()),
-          found_.sheets > 0
-              ? fmt::format("{} connected part{} of {} that {} closed around no axis", found_.sheets,
-                            found_.sheets == 1 ? "" : "s", name(), found_.sheets == 1 ? "is" : "are")
-              : fmt::format("lengths must be in Angstrom, and bonds of {} shorter than {:.3g} of them", name(),
-                            10 * reach_of_bonds(honeycomb_)));
+      throw InputError({file_, 0, ""}, fmt::format("has no {} nanotube in it", name()),
+                       found_.sheets > 0
+                           ? fmt::format("{} connected part{} of {} that {} closed around no axis", found_.sheets,
+                                         found_.sheets == 1 ? "" : "s", name(), found_.sheets == 1 ? "is" : "are")
+                           : fmt::format("lengths must be in Angstrom, and bonds of {} shorter than {:.3g} of them",
+                                         name(), 10 * reach_of_bonds(honeycomb_)));
     gather();
     sort();
     return std::move(found_);

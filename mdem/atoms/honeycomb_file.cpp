@@ -28,9 +28,10 @@ std::string find_atoms(const std::string& name) {
   for (const auto& entry : fs::directory_iterator(shipped_folder(), error))
     if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
-  throw InputError({"", 0, "--atoms"}, fmt::format("is \"{}\"", printable(name, 60)),
-                   fmt::format("name one of {}, or a file that says what the atoms are (docs/how-to/boron-nitride.md)",
-                               fmt::join(names, ", ")));
+  throw InputError(
+      {"", 0, "--atoms"}, fmt::format("is \"{}\"", printable(name, 60)),
+      fmt::format("name one of {}, or a file that says what the atoms are (docs/how-to/boron-nitride.md)",
+                  fmt::join(names, ", ")));
 }
 
 std::array<double, 2> two_numbers(const TomlTable& t, const char* key, const Bounds& bounds) {
@@ -108,13 +109,14 @@ Potential potential_of_atoms(const std::string& atoms, const std::string& name) 
   h.lattice_constant = std::sqrt(3.0) * top.number("bond_length_nm", Bounds::range(0.1, 0.4));
   read_contact(top, out);
   std::vector<PotentialLines> all;
-  for (const TomlTable& t : top.tables("potential")) all.push_back(read_lines(t, fs::path(path).parent_path().string()));
+  for (const TomlTable& t : top.tables("potential"))
+    all.push_back(read_lines(t, fs::path(path).parent_path().string()));
   if (all.empty())
     throw top.error("potential", "is missing", "add [[potential]] with name, pair_style, file and elements");
   top.finish();
-  const auto at = name.empty() ? all.begin() : std::find_if(all.begin(), all.end(), [&](const PotentialLines& p) {
-    return p.name == name;
-  });
+  const auto at =
+      name.empty() ? all.begin()
+                   : std::find_if(all.begin(), all.end(), [&](const PotentialLines& p) { return p.name == name; });
   if (at == all.end()) {
     std::vector<std::string> names;
     for (const PotentialLines& p : all) names.push_back(p.name);
@@ -136,7 +138,8 @@ Potential potential_of(const ParameterSet& set, const std::string& name) {
   if (set.honeycomb.carbon()) return find_potential(name);
   const std::string atoms = provenance_value(set, "atoms");
   if (atoms.empty())
-    throw InputError({set.path, 0, "provenance.atoms"}, fmt::format("is missing, which names the file of {}", set.honeycomb.name),
+    throw InputError({set.path, 0, "provenance.atoms"},
+                     fmt::format("is missing, which names the file of {}", set.honeycomb.name),
                      "make the set anew: ropewalk calibrate --atoms");
   return potential_of_atoms(atoms, name);
 }

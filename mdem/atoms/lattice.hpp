@@ -86,7 +86,7 @@ struct TubeShape {
   double twist = 0;               // rad/nm, right-handed positive
   double arc_shift = 0;           // rad
   double height_shift = 0;        // nm
-  double lift = 0;                // nm: radius of the second sublattice minus that of the first; `radius` is the mean
+  double lift = 0;  // nm: radius of the second sublattice minus that of the first; `radius` is the mean
 };
 
 TubeShape rolled_shape(Chirality c, double a = graphene_lattice_constant);

@@ -142,8 +142,15 @@ Potential find_potential(const std::string& name) {
                     "pair_style and pair_coeff lines",
                     nearest->name));
   }
-  return potential_of_lines({known->name, known->style, known->file, {known->element}, known->cutoff, known->inner,
-                             known->reference, known->doi, ""});
+  return potential_of_lines({known->name,
+                             known->style,
+                             known->file,
+                             {known->element},
+                             known->cutoff,
+                             known->inner,
+                             known->reference,
+                             known->doi,
+                             ""});
 }
 
 Potential potential_of_lines(const PotentialLines& lines) {

@@ -20,13 +20,13 @@ struct Potential {
   double inner = 0;   // nm, length from which bonds are cut off, and their force rises falsely; 0: not known
   Honeycomb honeycomb;  // whose atoms the commands name: type 1 is the first sublattice, type 2 a second species
   std::string atoms;    // where it comes from, "BN" or a file; empty: carbon
-  std::string pairs_reference, pairs_doi;  // of honeycomb.pairs
+  std::string pairs_reference, pairs_doi;  // sources of honeycomb.pairs
 };
 
 // A potential as it is written down.
 struct PotentialLines {
   std::string name, style, file;      // style: with its arguments
-  std::vector<std::string> elements;  // of the types
+  std::vector<std::string> elements;  // element of each type of atoms
   double cutoff = 0, inner = 0;       // nm
   std::string reference, doi;
   std::string folder;  // where the file may lie beside the folders of potentials

@@ -32,10 +32,11 @@ void refuse_other_lines(const Potential& potential, const std::string& name) {
     const std::vector<std::string> coeff = command_words(potential.commands[1]);
     if (coeff.size() == 4 + elements && coeff[0] == "pair_coeff" && coeff[1] == "*" && coeff[2] == "*") return;
   }
-  throw InputError({name, 0, "--potential"}, "has lines that several tubes cannot share",
-                   fmt::format("take one with pair_style STYLE and pair_coeff * * FILE {}",
-                               elements == 1 ? potential.honeycomb.species[0]
-                                             : potential.honeycomb.species[0] + " " + potential.honeycomb.species[1]));
+  throw InputError(
+      {name, 0, "--potential"}, "has lines that several tubes cannot share",
+      fmt::format("take one with pair_style STYLE and pair_coeff * * FILE {}",
+                  elements == 1 ? potential.honeycomb.species[0]
+                                : potential.honeycomb.species[0] + " " + potential.honeycomb.species[1]));
 }
 
 // The energies of all types, `species` of them a part.
@@ -113,9 +114,10 @@ AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string&
   std::string name = potential;
   for (const ParameterSet& set : sets) {
     if (set.honeycomb.name != sets.front().honeycomb.name)
-      throw InputError({set.path, 0, "lattice"},
-                       fmt::format("is of {}, and the first set of {}", set.honeycomb.name, sets.front().honeycomb.name),
-                       "take sets of one honeycomb");
+      throw InputError(
+          {set.path, 0, "lattice"},
+          fmt::format("is of {}, and the first set of {}", set.honeycomb.name, sets.front().honeycomb.name),
+          "take sets of one honeycomb");
     if (potential.empty()) {
       const std::string own = provenance_value(set, "potential");
       if (own.empty() || own == "user")

@@ -193,6 +193,12 @@ void grade_shell(const ParameterSet& set, Grade& grade) {
 // (1996), DOI 10.1063/1.470966), and the rest by those that have been calibrated.
 void grade_limits(const ParameterSet& set, Grade& grade) {
   const Validity& v = set.validity;
+  if (const Quantity* kink = find_quantity(set, "validity.kink_curvature");
+      !set.honeycomb.carbon() && kink && kink->origin == "derived")
+    add(grade, Level::limited,
+        fmt::format("kink, collapse and compression follow the rules for carbon, and {} may give way earlier by a third: "
+                    "calibrate with --envelope",
+                    set.honeycomb.name));
   const double d = 2 * set.radius;
   std::vector<Range> ranges = {{"kink_curvature over 0.155 nm/(2 r)^2", v.kink_curvature * d * d / 0.155, 0.5, 2},
                                {"twist_collapse", v.twist_collapse, 0.012, 0.2},

@@ -1,9 +1,10 @@
-// The sheet that a tube is rolled from: a honeycomb whose two sublattices may be of two species. Carbon is the default.
+// The sheet that a tube is rolled from: a honeycomb whose two sublattices may be of two species. Carbon is the
+// default.
 //
 //   lattice constant = sqrt(3) bond length, nm; atomic weights in u (atomic mass constant)
 //
-// Between the atoms of two tubes Lennard-Jones laws act, one for each pair of species. In two continuous shells, where
-// each species has half of the area density, their sum is again one Lennard-Jones law:
+// Between the atoms of two tubes Lennard-Jones laws act, one for each pair of species. In two continuous shells,
+// where each species has half of the area density, their sum is again one Lennard-Jones law:
 //
 //   v = (v_11 + 2 v_12 + v_22)/4 = A/d^12 - B/d^6,   sigma = (A/B)^(1/6),   epsilon = B^2/(4 A)
 #pragma once
@@ -25,7 +26,7 @@ struct PairLaw {
 
 struct Honeycomb {
   std::string name = "C";
-  std::array<std::string, 2> species = {"C", "C"};  // of the first and of the second sublattice
+  std::array<std::string, 2> species = {"C", "C"};  // symbols of the first and of the second sublattice
   std::array<double, 2> atomic_weight = {units::carbon_atomic_weight, units::carbon_atomic_weight};  // u
   double lattice_constant = graphene_lattice_constant;                                               // nm
   std::array<PairLaw, 3> pairs;  // 1 with 1, 1 with 2, 2 with 2; of carbon 0: its law stands in its sets alone

@@ -16,27 +16,22 @@
 //               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u:
 //               atomic mass constant), element_length (nm)
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
-//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
-//   and
+//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp, and
 //               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
-//   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers]
-//   }
+//   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers] }
 //               (nN), of a tube that is pulled and not twisted, at equal steps of strain from max_strain to end;
 //               end: largest strain that the atoms bear and that their potential describes; optional: start, the
 //               max_strain, and edge_force (nN), the force of EA and [bond.anharmonic] there, both of the time when
 //               the pull was made. Where they are missing they are what the set has now.
 //   [contact.NAME]    present: the set has the contact law NAME, with the numbers that the law's reader names:
 //               io/laws/paper.cpp, io/laws/line.cpp
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn
-//   (rad),
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad),
 //               sublattice_rise and sublattice_lift (nm): how far the second sublattice has moved against the first,
 //               around, along and off the axis
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
-//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
-//               off
+//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
 //   [provenance] optional strings: what the set was made from and by
-//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of
-//   the
+//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of the
 //               standard errors of these quantities; quantities in none of them are independent
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
@@ -110,7 +105,7 @@ struct ParameterSet {
   std::string reference;
   std::string doi;
   bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
-  Honeycomb honeycomb;            // of its walls
+  Honeycomb honeycomb;            // sheet that its walls are rolled from
   Chirality chirality;            // of the outer wall; (0,0), which is no tube, for a filament
   std::vector<Wall> walls;        // of a tube of several walls, inside first; empty for one wall and for a filament
   bool outer_carries = false;     // several walls: the outer one alone carries stretch and torsion
