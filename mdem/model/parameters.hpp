@@ -5,10 +5,10 @@
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
 //               A tube of several walls has meta.walls = [[n, m], ...], inside first, in place of meta.chirality, and
 //               meta.carried_by = "outer" | "all": the walls that carry stretch and torsion, "outer" where the walls
-//               inside slide, "all" where all are gripped or linked. Its [tube] has contact_radius (nm, of the outer wall)
-//               in place of radius, and atoms_per_length of all walls. [wall.1], [wall.2], ...: radius (nm),
-//               atoms_per_length (1/nm), EA (nN), EI, GJ (nN nm^2) of each wall; [held.all], [held.outer]: EA, EI, GJ of the
-//               tube by what carries it. [bond] has those of carried_by.
+//               inside slide, "all" where all are gripped or linked. Its [tube] has contact_radius (nm, of the outer
+//               wall) in place of radius, and atoms_per_length of all walls. [wall.1], [wall.2], ...: radius (nm),
+//               atoms_per_length (1/nm), EA (nN), EI, GJ (nN nm^2) of each wall; [held.all], [held.outer]: EA, EI, GJ
+//               of the tube by what carries it. [bond] has those of carried_by.
 //   [lattice]   optional, of what is no carbon: name, species = ["B", "N"] of the two sublattices, bond_length (nm, of
 //               the flat sheet), weight_1, weight_2 (u), and the Lennard-Jones laws between the atoms of two tubes:
 //               epsilon_11, epsilon_12, epsilon_22 (eV), sigma_11, sigma_12, sigma_22 (nm)
@@ -25,9 +25,9 @@
 //               the pull was made. Where they are missing they are what the set has now.
 //   [contact.NAME]    present: the set has the contact law NAME, with the numbers that the law's reader names:
 //               io/laws/paper.cpp, io/laws/line.cpp
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn (rad),
-//               sublattice_rise and sublattice_lift (nm): how far the second sublattice has moved against the first,
-//               around, along and off the axis
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV),
+//               sublattice_turn (rad), sublattice_rise and sublattice_lift (nm): how far the second sublattice has
+//               moved against the first, around, along and off the axis
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
 //               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
 //   [provenance] optional strings: what the set was made from and by
