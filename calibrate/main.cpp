@@ -34,7 +34,7 @@ std::string command_line(int argc, char** argv) {
   std::string text = "ropewalk calibrate";
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    text += word.find_first_of(" \t\n\"'$`\\") == std::string::npos ? " " + word : " '" + word + "'";
+    text += word.find_first_of(" \t\n\"'$`\\()") == std::string::npos ? " " + word : " '" + word + "'";
   }
   return text;
 }

@@ -35,6 +35,7 @@ void read_origin(std::string_view comment, AtomisticOrigin& origin) {
   const std::size_t from = comment.find_first_not_of(" \t", colon + 1);
   const std::string value(from == std::string_view::npos ? "" : comment.substr(from));
   if (key == "chirality") std::sscanf(value.c_str(), "%d,%d", &origin.chirality.n, &origin.chirality.m);
+  if (key == "species") origin.species = value;
   if (key == "potential") origin.potential = value;
   if (key == "potential file xxh64") origin.potential_hash = value;
   if (key == "LAMMPS") origin.lammps = value;
@@ -71,6 +72,7 @@ std::vector<OutputColumn> atomistic_columns() { return {table.begin(), table.end
 
 std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const AtomisticOrigin& origin) {
   std::string text = fmt::format("{}\n# chirality: {},{}\n", format_line, origin.chirality.n, origin.chirality.m);
+  if (!origin.species.empty()) text += fmt::format("# species: {}\n", origin.species);
   if (!origin.potential.empty()) text += fmt::format("# potential: {}\n", origin.potential);
   if (!origin.potential_hash.empty()) text += fmt::format("# potential file xxh64: {}\n", origin.potential_hash);
   if (!origin.lammps.empty()) text += fmt::format("# LAMMPS: {}\n", origin.lammps);

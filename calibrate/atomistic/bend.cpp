@@ -67,7 +67,7 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
     for (const auto& [ending, extra] : specimens) {
       const std::string kind = series.name + ending;
       const FiniteTube finite(run.c, tube.shape, short_part + extra, held_band(run.potential));
-      if (plane == 0) write_data(run, kind + ".data", finite.data());
+      if (plane == 0) write_data(run, kind + ".data", finite.data(run.potential.honeycomb));
       input += finite.commands(run.potential, kind + ".data", 0.5 * units::pi * plane) +
                "variable ftol equal 1e-3\n" + affine_bend_variables() + "minimize 0.0 ${ftol} 2000 20000\n" +
                results;

@@ -30,15 +30,16 @@ FiniteTube::FiniteTube(Chirality c, const TubeShape& shape, long free_hexagons, 
   for (const Site& site : sites) {
     if (part(site) == 0) ++below_;
     if (part(site) == 1) ++free_;
+    second_.push_back(site.second ? 1 : 0);
     atoms_.push_back(place(c, site, shape) - Vector3(0, 0, 0.5 * total_length_));
   }
 }
 
-std::string FiniteTube::data() const {
+std::string FiniteTube::data(const Honeycomb& honeycomb) const {
   double radius = 0;
   for (const Vector3& atom : atoms_) radius = std::max(radius, std::hypot(atom.x(), atom.y()));
   const double half = 0.5 * total_length_ + 1;
-  return data_file({atoms_}, radius + half, -half, half);
+  return data_file_of_tube(atoms_, second_, radius + half, -half, half, honeycomb);
 }
 
 std::string FiniteTube::commands(const Potential& potential, const std::string& data, double turn) const {

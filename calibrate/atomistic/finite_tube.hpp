@@ -30,7 +30,7 @@ class FiniteTube {
 
   const std::vector<Vector3>& atoms() const { return atoms_; }  // nm, centred at the origin, axis z
   double free_length() const { return free_length_; }
-  std::string data() const;
+  std::string data(const Honeycomb& honeycomb = {}) const;
 
   // Reads the data; group `held` is the two bands `below` and `above`, and fix `ref` keeps the straight positions.
   // `turn` (rad): the tube is turned by it about its axis first.
@@ -38,6 +38,7 @@ class FiniteTube {
 
  private:
   std::vector<Vector3> atoms_;
+  std::vector<char> second_;          // whether each is of the second sublattice
   std::size_t below_ = 0, free_ = 0;  // the atoms are sorted: lower band, free part, upper band
   double free_length_ = 0;
   double total_length_ = 0;

@@ -85,13 +85,15 @@ Measured force_at(const std::vector<AtomisticRow>& rows, double strain) {
 PulledCell pull_cell(RunContext& run, const RelaxedTube& tube) {
   const Chirality c = run.c;
   const LatticeVector period =
-      untwisted_cell(c, std::max({least_length, 2 * run.potential.cutoff, run.options.cell_length}));
+      untwisted_cell(c, std::max({least_length, 2 * run.potential.cutoff, run.options.cell_length}),
+                     run.potential.honeycomb.lattice_constant);
   const long hexagons = cell_hexagons(c, period);
   const double angle = -2 * units::pi * period_turns(c, period),
                length = static_cast<double>(hexagons) * tube.shape.length_per_hexagon;
   TubeShape shape = tube.shape;
   shape.twist = angle / length;
-  write_data(run, "pull.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length));
+  write_data(run, "pull.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length,
+                                          run.potential.honeycomb));
   const std::string relaxed =
       "minimize 0.0 1e-5 1000 10000\n"
       "print \"$(pe:%.15g)\" append pull.dat screen no\n"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 
 #include "io/clocks.hpp"
@@ -23,21 +24,48 @@ std::string header_commands(const std::string& boundary, double skin) {
       boundary, skin / angstrom);
 }
 
-std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,
-                      double z_high) {
-  const double half = half_width / angstrom;
-  std::string masses, atoms;
-  std::size_t type = 0, id = 0;
-  for (const std::vector<Vector3>& tube : tubes) {
-    masses += fmt::format("{} {}\n", ++type, units::carbon_atomic_weight);
-    for (const Vector3& atom : tube)
-      atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++id, type, atom.x() / angstrom, atom.y() / angstrom,
-                           atom.z() / angstrom);
+namespace {
+
+// `types` of one tube: 1, or 2 for two species.
+struct AtomLines {
+  const Honeycomb& honeycomb;
+  std::size_t types = 0, id = 0;
+  std::string masses{}, atoms{};
+
+  void add_tube(const std::vector<Vector3>& tube, const std::function<bool(std::size_t)>& second) {
+    const std::size_t first = types + 1;
+    for (std::size_t k = 0; k < (honeycomb.one_species() ? 1 : 2); ++k)
+      masses += fmt::format("{} {}\n", ++types, honeycomb.atomic_weight[k]);
+    for (std::size_t i = 0; i < tube.size(); ++i)
+      atoms += fmt::format("{} {} {:.12f} {:.12f} {:.12f}\n", ++id, second(i) ? types : first,
+                           tube[i].x() / angstrom, tube[i].y() / angstrom, tube[i].z() / angstrom);
   }
+  std::string text(double half_width, double z_low, double z_high) const;
+};
+
+}  // namespace
+
+std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low, double z_high,
+                      const Honeycomb& honeycomb) {
+  AtomLines lines{honeycomb};
+  for (const std::vector<Vector3>& tube : tubes)
+    lines.add_tube(tube, [&](std::size_t i) { return i >= tube.size() / 2; });
+  return lines.text(half_width, z_low, z_high);
+}
+
+std::string data_file_of_tube(const std::vector<Vector3>& atoms, const std::vector<char>& second, double half_width,
+                              double z_low, double z_high, const Honeycomb& honeycomb) {
+  AtomLines lines{honeycomb};
+  lines.add_tube(atoms, [&](std::size_t i) { return second[i] != 0; });
+  return lines.text(half_width, z_low, z_high);
+}
+
+std::string AtomLines::text(double half_width, double z_low, double z_high) const {
+  const double half = half_width / angstrom;
   return fmt::format(
-      "carbon nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
+      "{} nanotubes, Angstrom\n\n{} atoms\n{} atom types\n\n{:.6f} {:.6f} xlo xhi\n{:.6f} {:.6f} ylo yhi\n"
       "{:.12f} {:.12f} zlo zhi\n\nMasses\n\n{}\nAtoms # atomic\n\n{}",
-      id, type, -half, half, -half, half, z_low / angstrom, z_high / angstrom, masses, atoms);
+      honeycomb.carbon() ? "carbon" : honeycomb.name, id, types, -half, half, -half, half, z_low / angstrom, z_high / angstrom, masses, atoms);
 }
 
 std::string cell_commands(const Potential& potential, const std::string& data) {
@@ -86,6 +114,26 @@ std::vector<std::vector<double>> read_results(const std::string& folder, const s
   }
   if (table.size() < least || table.size() > most) fail(fmt::format("left {} of {} results", table.size(), most));
   return table;
+}
+
+std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
+  const std::string path = run.folder + "/" + name;
+  if (!std::filesystem::exists(path)) refuse_full_disk(run.folder);
+  std::istringstream lines(read_file(path));
+  std::vector<Vector3> atoms;
+  std::string line;
+  while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    long id = 0;
+    double x = 0, y = 0, z = 0;
+    if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
+  }
+  if (atoms.size() == count) return atoms;
+  refuse_full_disk(run.folder);
+  throw LammpsError(
+      fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
 }
 
 void check_convergence(RunContext& run, const std::string& what, double force, double energy) {

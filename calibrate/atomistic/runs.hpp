@@ -90,16 +90,31 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
 // Incremental runs, which take minutes. Appends their rows.
 Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,
                            std::vector<AtomisticRow>& rows);
+// The specimen of such runs: its straight tube with held ends.
+struct EnvelopeSpecimen {
+  std::string commands;    // read the data, define the groups `held` and `free`, fix `ref` and variable `half`
+  double free_length = 0;  // nm
+  double radius = 0;       // nm, of the outer wall
+  double twist = 0;        // rad/nm, natural
+  std::size_t atoms = 0;
+};
+inline constexpr double envelope_length = 12;  // nm
+Envelope measured_envelope(RunContext& run, const EnvelopeSpecimen& specimen, const Stiffness& stiffness,
+                           std::vector<AtomisticRow>& rows);
 
 // Shared pieces of the inputs.
 // The start of an input that minimises one uniform cell; v_wide scales v_new_x and v_new_y.
 std::string uniform_cell_commands(const Potential& potential, const std::string& data);
-// The period of a cell with no twist, or with very little where the period of the tube is long.
-LatticeVector untwisted_cell(Chirality c, double min_length);
+// The period of a cell with no twist, or with very little where the period of the tube is long. `a`: lattice constant, nm.
+LatticeVector untwisted_cell(Chirality c, double min_length, double a = graphene_lattice_constant);
 std::string header_commands(const std::string& boundary, double skin);
-// The atoms of each tube (nm) as a type of their own, in a box about the axis.
-std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low,
-                      double z_high);
+// The atoms of each tube (nm), as tube_atoms() orders them, in a box about the axis. Each tube is a type of its own, or
+// two where its sublattices are of two species.
+std::string data_file(const std::vector<std::vector<Vector3>>& tubes, double half_width, double z_low, double z_high,
+                      const Honeycomb& honeycomb = {});
+// The same of one tube in any order. `second`: whether an atom is of the second sublattice.
+std::string data_file_of_tube(const std::vector<Vector3>& atoms, const std::vector<char>& second, double half_width,
+                              double z_low, double z_high, const Honeycomb& honeycomb);
 // The start of an input that minimises one periodic cell, which may buckle or collapse.
 std::string cell_commands(const Potential& potential, const std::string& data);
 void write_data(const RunContext& run, const std::string& name, const std::string& content);
@@ -107,6 +122,8 @@ void write_data(const RunContext& run, const std::string& name, const std::strin
 // lines or more than `most`.
 std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name, std::size_t least,
                                               std::size_t most, std::size_t columns);
+// Atoms (nm) that a run dumped to the file `name`, in the order of their ids.
+std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count);
 // Adds a warning if the residual forces of the minimiser (eV/nm) may stand for more than 1e-3 of the energy (eV).
 void check_convergence(RunContext& run, const std::string& what, double force, double energy);
 void run_stage(RunContext& run, const std::string& name, const std::string& input);

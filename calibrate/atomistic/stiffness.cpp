@@ -22,11 +22,11 @@ InputError bad_option(const char* key, const std::string& what, const std::strin
   return InputError({"", 0, key}, what, remedy);
 }
 
-void check_tube(Chirality c) {
+void check_tube(Chirality c, double a) {
   if (!c.valid())
     throw bad_option("chirality", fmt::format("({},{}) is not a tube", c.n, c.m),
                      "give n and m, neither negative, for example 10,10");
-  const double diameter = 2 * tube_radius(c);
+  const double diameter = 2 * tube_radius(c, a);
   if (diameter < smallest_diameter)
     throw bad_option("chirality",
                      fmt::format("({},{}) is {:.3f} nm wide; below {} nm atoms across the tube are within reach of "
@@ -51,7 +51,8 @@ void check_options(const StiffnessOptions& o) {
 
 // Checks of the options before the first LAMMPS run, since an error after minutes would cost time.
 void check_size(Chirality c, const Potential& potential, const StiffnessOptions& options) {
-  double atoms = (options.long_length + 2 * held_band(potential)) * atoms_per_length(c);
+  const double a = potential.honeycomb.lattice_constant;
+  double atoms = (options.long_length + 2 * held_band(potential)) * atoms_per_length(c, a);
   // A rough bound first: the lattice vectors of a huge tube are many.
   if (atoms <= max_atoms)
     for (const LatticeVector& period : stretch_twist_periods(c, potential, options, elastic_grid(options)))
@@ -59,12 +60,12 @@ void check_size(Chirality c, const Potential& potential, const StiffnessOptions&
   if (atoms > max_atoms)
     throw bad_option("chirality",
                      fmt::format("({},{}) is {:.2f} nm wide and needs cells of {:.0f} atoms; the limit is {}", c.n,
-                                 c.m, 2 * tube_radius(c), atoms, max_atoms),
+                                 c.m, 2 * tube_radius(c, a), atoms, max_atoms),
                      "choose a narrower tube, or shorter bend lengths and a wider shear window");
 }
 
-void warn_of_width(Chirality c, std::vector<std::string>& warnings) {
-  const double diameter = 2 * tube_radius(c);
+void warn_of_width(Chirality c, double a, std::vector<std::string>& warnings) {
+  const double diameter = 2 * tube_radius(c, a);
   if (diameter > faceting_diameter)
     warnings.push_back(
         fmt::format("({},{}) is {:.2f} nm wide: tubes wider than {:.0f} nm facet in ropes (contact "
@@ -116,11 +117,11 @@ double Stiffness::surface_density() const { return atoms_per_length.value / (2 *
 
 Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::string& folder,
                             const StiffnessOptions& options) {
-  check_tube(c);
+  check_tube(c, potential.honeycomb.lattice_constant);
   check_options(options);
   check_size(c, potential, options);
   Stiffness out;
-  warn_of_width(c, out.warnings);
+  warn_of_width(c, potential.honeycomb.lattice_constant, out.warnings);
   const auto tell = [&](const std::string& line) {
     if (options.progress) options.progress(line);
   };
@@ -167,6 +168,7 @@ Stiffness measure_stiffness(Chirality c, const Potential& potential, const std::
   move_inner_shift(run, options.largest_shear, at_rest);
   out.sublattice_turn = at_rest.arc_shift;
   out.sublattice_rise = at_rest.height_shift;
+  out.sublattice_lift = tube.shape.lift;
   out.envelope = scaled_envelope(tube.shape.radius);
   limits_from_terms(out, out.envelope);
   const double kink = out.envelope.kink_curvature.value;

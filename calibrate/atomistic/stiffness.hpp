@@ -120,7 +120,9 @@ struct Stiffness {
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
-  double sublattice_turn = 0, sublattice_rise = 0;  // turn (rad) and rise (nm) of the second sublattice
+  // Turn (rad) and rise (nm) of the second sublattice in the relaxed tube; the lift (nm) is its radius minus that of the
+  // first one.
+  double sublattice_turn = 0, sublattice_rise = 0, sublattice_lift = 0;
   double energy_offset = 0;    // energy at the minimum of the fit, eV/nm; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
   Measured stretch_cubic;  // coefficient of e^3, eV/nm
@@ -148,6 +150,7 @@ Envelope scaled_envelope(double radius);
 // The head of a table, one "# key: value" line each.
 struct AtomisticOrigin {
   Chirality chirality;
+  std::string species;  // "B and N"; empty: carbon
   std::string potential, potential_hash, lammps;
   std::vector<std::string> notes;
 };

@@ -13,7 +13,8 @@ namespace ropewalk::calibrate {
 namespace {
 
 using units::pi;
-constexpr double skin = 0.04;  // nm; nothing moves far in these cells
+constexpr double skin = 0.04;                // nm; nothing moves far in these cells
+constexpr double relaxed_graphene = 0.2485;  // nm: lattice constant of carbon with which a relaxation begins
 
 // All atoms of a uniform cell are equivalent: the minimiser effectively varies three numbers (radius and inner
 // shift) and converges to rounding in some tens of steps.
@@ -26,16 +27,17 @@ std::string report(const std::string& name, const char* values) {
 }
 
 // The shortest cell whose shear is close to the wanted one; otherwise the closest cell.
-LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_length) {
+LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_length, double a) {
   // Shears on the lattice are fine enough that one of these lengths is close.
-  const double step = graphene_lattice_constant;
+  const double step = a;
   const double longest = std::max(1.3 * min_length, 2.5 * step / std::max(std::abs(shear), tolerance));
-  const double radius = tube_radius(c);
-  const std::vector<LatticeVector> periods = twisted_periods(
-      c, min_length, std::max(longest, min_length + 1.01 * step * std::sqrt(3.0)), std::abs(shear) + 4 * tolerance);
+  const double radius = tube_radius(c, a);
+  const std::vector<LatticeVector> periods =
+      twisted_periods(c, min_length, std::max(longest, min_length + 1.01 * step * std::sqrt(3.0)),
+                      std::abs(shear) + 4 * tolerance, a);
   const auto shear_of = [&](const LatticeVector& v) {
     return -2 * pi * radius * period_turns(c, v) /
-           (static_cast<double>(cell_hexagons(c, v)) * rolled_shape(c).length_per_hexagon);
+           (static_cast<double>(cell_hexagons(c, v)) * rolled_shape(c, a).length_per_hexagon);
   };
   const LatticeVector* best = nullptr;
   const auto cost = [&](const LatticeVector& v) {
@@ -48,43 +50,25 @@ LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_
   return *best;
 }
 
-// Atoms as LAMMPS dumped them, in order of their ids.
-std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
-  const std::string path = run.folder + "/" + name;
-  if (!std::filesystem::exists(path)) refuse_full_disk(run.folder);
-  std::istringstream lines(read_file(path));
-  std::vector<Vector3> atoms;
-  std::string line;
-  while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
-  }
-  while (std::getline(lines, line)) {
-    std::istringstream words(line);
-    long id = 0;
-    double x = 0, y = 0, z = 0;
-    if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
-  }
-  if (atoms.size() == count) return atoms;
-  refuse_full_disk(run.folder);
-  throw LammpsError(
-      fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
-}
-
 // Mean displacement of the second sublattice against the first, from where `shape` places them. The mirror of an
-// armchair tube keeps the one of the two, that of a zigzag tube the other at 0.
+// armchair tube keeps the one of the two, that of a zigzag tube the other at 0. A twofold axis, which swaps the
+// sublattices of one species, keeps the lift at 0.
 void find_inner_shift(Chirality c, const std::vector<Site>& sites, const std::vector<Vector3>& atoms,
-                      TubeShape& shape) {
+                      bool one_species, TubeShape& shape) {
   const double length = static_cast<double>(sites.size() / 2) * shape.length_per_hexagon;
-  double arc[2] = {0, 0}, height[2] = {0, 0};
+  double arc[2] = {0, 0}, height[2] = {0, 0}, radius[2] = {0, 0};
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Vector3 rolled = place(c, sites[i], shape);
     const double turned = std::atan2(rolled.x() * atoms[i].y() - rolled.y() * atoms[i].x(),
                                      rolled.x() * atoms[i].x() + rolled.y() * atoms[i].y());
     arc[sites[i].second] += turned;
     height[sites[i].second] += std::remainder(atoms[i].z() - rolled.z(), length);
+    radius[sites[i].second] += std::hypot(atoms[i].x(), atoms[i].y());
   }
   const double per_atom = 2.0 / static_cast<double>(sites.size());
   shape.arc_shift = c.n == 0 || c.m == 0 ? 0 : (arc[1] - arc[0]) * per_atom;
   shape.height_shift = c.n == c.m ? 0 : (height[1] - height[0]) * per_atom;
+  shape.lift = one_species ? 0 : (radius[1] - radius[0]) * per_atom;
 }
 
 // The rolled sheet is within 10 % of every relaxed tube. A potential without this minimum may give any result.
@@ -118,24 +102,26 @@ std::string uniform_cell_commands(const Potential& potential, const std::string&
   return text;
 }
 
-LatticeVector untwisted_cell(Chirality c, double min_length) {
+LatticeVector untwisted_cell(Chirality c, double min_length, double a) {
   const LatticeVector t = translation_vector(c);
-  const double length = translational_period(c);
+  const double length = translational_period(c, a);
   const int copies = std::max(1, static_cast<int>(std::ceil(min_length / length - 1e-9)));
   // A tube with a long period gets a cell with a very small twist instead.
-  if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length);
+  if (length > std::max(8.0, 2 * min_length)) return cell_near(c, 0, 2e-4, min_length, a);
   return {copies * t.p, copies * t.q};
 }
 
 RelaxedTube relax_tube(RunContext& run) {
   const Chirality c = run.c;
-  const LatticeVector period = untwisted_cell(c, std::max(shortest_cell, 2 * run.potential.cutoff));
+  const Honeycomb& honeycomb = run.potential.honeycomb;
+  const double a = honeycomb.lattice_constant;
+  const LatticeVector period = untwisted_cell(c, std::max(shortest_cell, 2 * run.potential.cutoff), a);
   const long hexagons = cell_hexagons(c, period);
-  TubeShape shape = rolled_shape(c, 0.2485);
+  TubeShape shape = rolled_shape(c, honeycomb.carbon() ? relaxed_graphene : a);
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   shape.twist = -2 * pi * period_turns(c, period) / length;
   const std::vector<Site> sites = strip_sites(c, hexagons);
-  write_data(run, "relax.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length));
+  write_data(run, "relax.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, length, honeycomb));
 
   const std::string values = report("relax", "$(pe:%.15g) $(fnorm:%.6g) $(lz:%.15g) $(c_rho:%.15g)");
   run_stage(run, "relax",
@@ -161,28 +147,29 @@ RelaxedTube relax_tube(RunContext& run) {
   tube.shape.twist = shape.twist * length / (result[0][2] * angstrom);
   tube.energy_per_hexagon = result[0][0] / static_cast<double>(hexagons);
   tube.contraction = -std::log(result[1][3] / result[0][3]) / std::log(1.005);
-  find_inner_shift(c, sites, read_atoms(run, "relax.atoms", sites.size()), tube.shape);
+  find_inner_shift(c, sites, read_atoms(run, "relax.atoms", sites.size()), honeycomb.one_species(), tube.shape);
   return tube;
 }
 
 void move_inner_shift(RunContext& run, double shear, TubeShape& shape) {
   const Chirality c = run.c;
   if (!c.chiral() || shape.twist == 0) return;
+  const Honeycomb& honeycomb = run.potential.honeycomb;
   const LatticeVector period = cell_near(c, std::copysign(shear, shape.twist), 0.1 * shear,
-                                         std::max(shortest_cell, 2 * run.potential.cutoff));
+                                         std::max(shortest_cell, 2 * run.potential.cutoff), honeycomb.lattice_constant);
   const long hexagons = cell_hexagons(c, period);
   TubeShape twisted = shape;
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
   twisted.twist = -2 * pi * period_turns(c, period) / length;
   const double part = shape.twist / twisted.twist;
   const std::vector<Site> sites = strip_sites(c, hexagons);
-  write_data(run, "shift.data", data_file({tube_atoms(c, twisted, hexagons)}, shape.radius + 0.5, 0, length));
+  write_data(run, "shift.data", data_file({tube_atoms(c, twisted, hexagons)}, shape.radius + 0.5, 0, length, honeycomb));
   run_stage(run, "shift",
             "# a twisted cell, for its inner shift\n" + uniform_cell_commands(run.potential, "shift.data") +
                 "minimize 0.0 1e-9 2000 20000\n"
                 "write_dump all custom shift.atoms id x y z modify sort id format float %.12f\n");
   // The atoms began at the shift of the untwisted cell: what is found is the change.
-  find_inner_shift(c, sites, read_atoms(run, "shift.atoms", sites.size()), twisted);
+  find_inner_shift(c, sites, read_atoms(run, "shift.atoms", sites.size()), honeycomb.one_species(), twisted);
   shape.arc_shift += part * twisted.arc_shift;
   shape.height_shift += part * twisted.height_shift;
 }
@@ -204,10 +191,12 @@ CellGrid wide_grid(Chirality c, const Envelope& limits) {
 std::vector<LatticeVector> stretch_twist_periods(Chirality c, const Potential& potential,
                                                  const StiffnessOptions& options, const CellGrid& grid) {
   const double min_length = std::max({shortest_cell, 2 * potential.cutoff, options.cell_length});
+  const double a = potential.honeycomb.lattice_constant;
   std::vector<LatticeVector> periods;
   for (const double part : grid.parts_of_shear)
-    periods.push_back(part == 0 ? untwisted_cell(c, min_length)
-                                : cell_near(c, part * grid.largest_shear, 0.1 * grid.largest_shear, min_length));
+    periods.push_back(part == 0
+                          ? untwisted_cell(c, min_length, a)
+                          : cell_near(c, part * grid.largest_shear, 0.1 * grid.largest_shear, min_length, a));
   return periods;
 }
 
@@ -232,7 +221,8 @@ std::vector<CellResult> stretch_twist_cells(RunContext& run, const RelaxedTube& 
         shape.length_per_hexagon *= 1 + strain;
         shape.radius *= 1 - start.contraction * strain;
         shape.twist = angle / cell.length;
-        write_data(run, data, data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, cell.length));
+        write_data(run, data, data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 0.5, 0, cell.length,
+                                        run.potential.honeycomb));
         input += uniform_cell_commands(run.potential, data);
       } else {
         const double step = cell.length / cells.back().length - 1;
@@ -280,7 +270,8 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
   const Chirality c = run.c;
   const double radius = tube.shape.radius;
   const std::vector<LatticeVector> periods =
-      twisted_periods(c, collapse_cell, longest_collapse_cell, 1.05 * shears.back() / radius);
+      twisted_periods(c, collapse_cell, longest_collapse_cell, 1.05 * shears.back() / radius,
+                      run.potential.honeycomb.lattice_constant);
   std::string input = "# twisted cells with a little noise, which may collapse\n";
   std::vector<AtomisticRow> rows;
   for (const double shear : shears) {
@@ -294,7 +285,8 @@ std::vector<AtomisticRow> collapse_rows(RunContext& run, const RelaxedTube& tube
     TubeShape shape = tube.shape;
     shape.twist = row.twist;
     const std::string data = fmt::format("collapse-{}.data", rows.size());
-    write_data(run, data, data_file({tube_atoms(c, shape, cell.hexagons)}, radius + 1, 0, row.length));
+    write_data(run, data, data_file({tube_atoms(c, shape, cell.hexagons)}, radius + 1, 0, row.length,
+                                    run.potential.honeycomb));
     input += cell_commands(run.potential, data) +
              fmt::format("displace_atoms all random 0.02 0.02 0.02 {} units box\nminimize 0.0 2e-4 6000 60000\n",
                          3001 + rows.size());

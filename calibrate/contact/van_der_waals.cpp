@@ -229,20 +229,32 @@ Well crossed_well(const AtomLaw& law, const Shell& i, const Shell& j, double ang
 
 double parallel_energy_of_atoms(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
                                 double turn, double shift) {
-  if (!(law.cutoff < infinite))
+  return parallel_energy_of_atoms(SpeciesLaws{law, law, law}, i, j, distance, turn, shift);
+}
+
+double parallel_energy_of_atoms(const SpeciesLaws& laws, const AtomColumn& i, const AtomColumn& j, double distance,
+                                double turn, double shift) {
+  const double cutoff = laws[0].cutoff;
+  if (!(cutoff < infinite))
     throw std::invalid_argument("van der Waals: a sum over atoms needs a finite cutoff");
   if (i.atoms.empty() || j.atoms.empty() || !(i.period > 0) || !(j.period > 0))
     throw std::invalid_argument("van der Waals: a cell needs atoms and a positive period");
   const double c = std::cos(turn), s = std::sin(turn);
   double sum = 0;
-  for (const Vector3& b : j.atoms) {
+  const auto second = [](const AtomColumn& column, std::size_t k) {
+    return std::size_t{!column.second.empty() && column.second[k] != 0};
+  };
+  for (std::size_t l = 0; l < j.atoms.size(); ++l) {
+    const Vector3& b = j.atoms[l];
     const double x = distance + c * b.x() - s * b.y(), y = s * b.x() + c * b.y();
-    for (const Vector3& a : i.atoms) {
+    for (std::size_t k = 0; k < i.atoms.size(); ++k) {
+      const Vector3& a = i.atoms[k];
       const double across = square(x - a.x()) + square(y - a.y());
-      if (across >= square(law.cutoff)) continue;
-      const double half = std::sqrt(square(law.cutoff) - across), dz = b.z() + shift - a.z();
-      for (double k = std::ceil((-half - dz) / j.period); dz + k * j.period <= half; ++k)
-        sum += law.energy(std::sqrt(across + square(dz + k * j.period)));
+      if (across >= square(cutoff)) continue;
+      const AtomLaw& law = laws[second(i, k) + second(j, l)];
+      const double half = std::sqrt(square(cutoff) - across), dz = b.z() + shift - a.z();
+      for (double n = std::ceil((-half - dz) / j.period); dz + n * j.period <= half; ++n)
+        sum += law.energy(std::sqrt(across + square(dz + n * j.period)));
     }
   }
   return sum / i.period;
@@ -255,7 +267,7 @@ std::array<double, 3> registry_parts(int k) {
   return {part(root), part(root * root), part(root * root * root)};
 }
 
-RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
+RegistrySpread registry_spread(const SpeciesLaws& laws, const AtomColumn& i, const AtomColumn& j, double distance,
                                int samples) {
   if (samples < 1) throw std::invalid_argument("van der Waals: at least one registry");
   RegistrySpread out;
@@ -270,7 +282,7 @@ RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const At
       const Vector3& x = i.atoms[a];
       turned.atoms[a] = {c * x.x() - s * x.y(), s * x.x() + c * x.y(), x.z()};
     }
-    const double energy = parallel_energy_of_atoms(law, turned, j, distance, 2 * pi * turn_j, j.period * shift);
+    const double energy = parallel_energy_of_atoms(laws, turned, j, distance, 2 * pi * turn_j, j.period * shift);
     out.mean += energy / samples;
     squares += energy * energy / samples;
     out.least = std::min(out.least, energy);

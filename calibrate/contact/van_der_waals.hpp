@@ -26,7 +26,7 @@ namespace ropewalk::calibrate {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Lennard-Jones between two carbon atoms.
+// Lennard-Jones between two atoms.
 struct AtomLaw {
   double epsilon = 2.84e-3;  // eV
   double sigma = 0.34;       // nm
@@ -40,7 +40,7 @@ struct Shell {
   double density = 0;  // atoms per nm^2
 };
 
-// Two atoms per hexagon of graphene of lattice constant a.
+// Two atoms per hexagon of a sheet of lattice constant a.
 double graphene_density(double a);
 
 // Adaptive quadrature (GSL) finds these to 1e-7 of the well or better. `distance` is that of the axes and must
@@ -59,7 +59,12 @@ double line_density(const AtomLaw& law, const Shell& i, const Shell& j, double r
 struct AtomColumn {
   std::vector<Vector3> atoms;  // nm, axis z
   double period = 0;           // nm
+  std::vector<char> second;    // whether each is of a second species; empty: none is
 };
+// Laws between the atoms of two species: 1 with 1, 1 with 2, 2 with 2; all with one cutoff.
+using SpeciesLaws = std::array<AtomLaw, 3>;
+double parallel_energy_of_atoms(const SpeciesLaws& laws, const AtomColumn& i, const AtomColumn& j, double distance,
+                                double turn, double shift);
 double parallel_energy_of_atoms(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
                                 double turn, double shift);
 
@@ -71,7 +76,7 @@ std::array<double, 3> registry_parts(int k);
 struct RegistrySpread {
   double mean = 0, deviation = 0, least = 0, largest = 0;
 };
-RegistrySpread registry_spread(const AtomLaw& law, const AtomColumn& i, const AtomColumn& j, double distance,
+RegistrySpread registry_spread(const SpeciesLaws& laws, const AtomColumn& i, const AtomColumn& j, double distance,
                                int samples = 2000);
 
 struct Well {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "atoms/honeycomb_file.hpp"
 #include "io/data_files.hpp"
 #include "io/parameters_toml.hpp"
 #include "verbs/verbs.hpp"
@@ -33,7 +34,7 @@ Calibration remake(const ParameterSet& set) {
   if (potential.empty())
     throw InputError({set.path, 0, "provenance.potential"}, "is missing",
                      "only a set made by `ropewalk calibrate` can be remade");
-  request.potential = find_potential(potential);
+  request.potential = potential_of(set, potential);
   request.law = parse_atom_law(
       fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
       value_of(set, "contact.line.lj_cutoff"));

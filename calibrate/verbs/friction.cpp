@@ -45,6 +45,7 @@ Tube tube_of(const std::string& name) {
   Tube tube;
   tube.set = read_parameters(find_parameters(name, "", {"", 0, "set"}));
   refuse_filament(tube.set, "no friction follows from it", "give strength_pN_per_nm in [[friction]]");
+  refuse_other_than_carbon(tube.set, "friction is measured between atoms of carbon alone");
   if (!tube.set.law<LineParameters>())
     throw InputError({tube.set.path, 0, "contact.line"},
                      "is missing: the set does not say how atoms of two tubes attract",

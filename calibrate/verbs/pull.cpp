@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "atomistic/runs.hpp"
+#include "atoms/honeycomb_file.hpp"
 #include "atoms/tube_reference.hpp"
 #include "io/data_files.hpp"
 #include "io/file_group.hpp"
@@ -76,7 +77,7 @@ int pull_command(const PullArguments& a) {
   if (!set.anharmonic)
     throw InputError({set.path, 0, "bond.anharmonic"}, "is missing, where the pull begins",
                      "take a set that ropewalk calibrate made with --potential tersoff");
-  const Potential potential = find_potential(provenance_value(set, "potential"));
+  const Potential potential = potential_of(set, provenance_value(set, "potential"));
   if (potential.file_hash != provenance_value(set, "potential_hash"))
     throw InputError({set.path, 0, "provenance.potential_hash"}, "is that of another file than " + potential.file,
                      "set LAMMPS_POTENTIALS to the folder of the file, or make the set anew");
@@ -125,8 +126,8 @@ int pull_command(const PullArguments& a) {
   parameters_of_text(text, out);  // throws where other commands would refuse it
   write_files_together({{stiffness_file, table}, {contact_file, contact}, {out, text}});
   for (const std::string& w : run.warnings) fmt::print("warning: {}\n", w);
-  fmt::print("({},{}): {:.4g} nN at a strain of {:.3g}; beyond it {}; law within {:.1e} of the energy\nSet: {}\n",
-             set.chirality.n, set.chirality.m, pull.force.back().value * units::eV_in_nN_nm, pull.end,
+  fmt::print("{}: {:.4g} nN at a strain of {:.3g}; beyond it {}; law within {:.1e} of the energy\nSet: {}\n",
+             tube_name(set), pull.force.back().value * units::eV_in_nN_nm, pull.end,
              pull.ended_by, pull.error, out);
   return 0;
 }

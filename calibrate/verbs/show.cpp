@@ -261,7 +261,7 @@ void print_set(const ParameterSet& set) {
                q.standard_error ? measured_text(q) : fmt::format("{:.7g}, error not known", q.value), q.unit,
                q.origin, q.note);
   }
-  if (!set.filament) print_section(set);
+  if (!set.filament && set.honeycomb.carbon()) print_section(set);
   if (set.provenance.empty()) return;
   fmt::print("\n[provenance]\n");
   for (const auto& [key, value] : set.provenance) fmt::print("  {:<18}{}\n", key, value);
@@ -280,7 +280,7 @@ std::string calibration_page(const ParameterSet& set) {
   html += paragraph("<b>" + escape_markup(grade_of(set).words()) + "</b>");
   html += heading("Stretch, twist and bend") + elastic_part(set, figures);
   html += heading("Contact") + contact_part(set, figures);
-  if (!set.filament) html += heading("As bonds of rigid elements") + section_part(set);
+  if (!set.filament && set.honeycomb.carbon()) html += heading("As bonds of rigid elements") + section_part(set);
   html += heading("Parameters") + parameters_part(set.name, set.reference, set.quantities);
   html += heading("Where it comes from") + provenance_part(set);
   return html + "</main>\n</body>\n</html>\n";

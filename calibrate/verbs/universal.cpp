@@ -10,7 +10,7 @@ namespace ropewalk::calibrate {
 namespace {
 
 struct UniversalArguments {
-  std::string lj = "2.84e-3,0.34";
+  std::string lj = law_of_carbon;
   double lj_cutoff = 1.2;
   std::string out;  // empty: the shipped file
   bool force = false;

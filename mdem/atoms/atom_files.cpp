@@ -41,7 +41,17 @@ bool parse(std::string_view word, T& value) {
   return !word.empty() && code == std::errc() && end == word.data() + word.size();
 }
 
-bool is_carbon_mass(double mass) { return std::fabs(mass - units::carbon_atomic_weight) < 0.2; }
+// 1 or 2: the sublattice whose species has this weight (u) or symbol; 0: neither.
+char species_of_mass(const Honeycomb& h, double mass) {
+  for (std::size_t k = 0; k < 2; ++k)
+    if (std::fabs(mass - h.atomic_weight[k]) < 0.2) return static_cast<char>(k + 1);
+  return 0;
+}
+char species_of_symbol(const Honeycomb& h, std::string_view symbol) {
+  for (std::size_t k = 0; k < 2; ++k)
+    if (symbol == h.species[k]) return static_cast<char>(k + 1);
+  return h.carbon() && symbol == "6" ? 1 : 0;
+}
 
 // Lines of a file with their numbers.
 class Lines {
@@ -74,6 +84,7 @@ struct CutOff {};
 
 // Masses by type and the number of types, where the file names them.
 struct Species {
+  Honeycomb honeycomb;
   std::map<long, double> masses;
   long types = 0;
 };
@@ -112,7 +123,7 @@ void reserve(AtomFrame& frame, std::vector<std::int64_t>& ids, std::int64_t n) {
   frame = AtomFrame();
   const auto size = static_cast<std::size_t>(n);
   frame.positions.resize(size);
-  frame.carbon.resize(size);
+  frame.species.resize(size);
   ids.resize(size);
 }
 
@@ -124,10 +135,10 @@ std::int64_t atom_count(const Lines& lines, std::string_view word) {
   return n;
 }
 
-char carbon_by_type(const Lines& lines, const Species& species, long type, bool only_type) {
+char species_by_type(const Lines& lines, const Species& species, long type, bool only_type) {
   const auto known = species.masses.find(type);
-  if (known != species.masses.end()) return is_carbon_mass(known->second) ? 1 : 0;
-  if (only_type) return 1;
+  if (known != species.masses.end()) return species_of_mass(species.honeycomb, known->second);
+  if (only_type && species.honeycomb.one_species()) return 1;
   lines.fail("type", fmt::format("{} is of no known species", type),
              "give the LAMMPS data file too, whose Masses say it, or dump the column element");
 }
@@ -237,7 +248,7 @@ class AtomDataReader : public Reader {
       long type = 0;
       if (!parse(w[static_cast<std::size_t>(style->type)], type))
         lines_.fail("Atoms", "a type is no whole number", "name the atom style: Atoms # full");
-      frame_.carbon[i] = carbon_by_type(lines_, species_, type, species_.types == 1);
+      frame_.species[i] = species_by_type(lines_, species_, type, species_.types == 1);
       for (int x = 0; x < 3; ++x)
         frame_.positions[i][x] = angstrom * number(lines_, w[static_cast<std::size_t>(style->x + x)], "Atoms");
     }
@@ -394,14 +405,14 @@ class AtomDumpReader : public Reader {
         frame.velocities[i][k] =
             angstrom * (real_ ? 1e3 : 1) * number(lines_, word(v[static_cast<std::size_t>(k)]), "vx vy vz");
       if (element >= 0) {
-        frame.carbon[i] = word(element) == "C";
+        frame.species[i] = species_of_symbol(species_.honeycomb, word(element));
       } else if (mass >= 0) {
-        frame.carbon[i] = is_carbon_mass(number(lines_, word(mass), "mass"));
+        frame.species[i] = species_of_mass(species_.honeycomb, number(lines_, word(mass), "mass"));
       } else {
         long t = 1;
         if (type >= 0 && !parse(word(type), t)) lines_.fail("type", "is no whole number", truncated);
         if (species_.masses.empty() && t != 1) lone_type_ = false;
-        frame.carbon[i] = carbon_by_type(lines_, species_, t, lone_type_);
+        frame.species[i] = species_by_type(lines_, species_, t, lone_type_);
       }
     }
   }
@@ -417,7 +428,8 @@ class AtomDumpReader : public Reader {
 class XyzReader : public Reader {
  public:
   // `frames`: that came before this file. A file that states no time has its frames 1 ps apart.
-  XyzReader(const std::string& path, std::int64_t frames) : lines_(path), frame_(frames) {}
+  XyzReader(const std::string& path, std::int64_t frames, const Honeycomb& honeycomb)
+      : lines_(path), frame_(frames), honeycomb_(honeycomb) {}
 
   bool next(AtomFrame& frame, std::vector<std::int64_t>& ids) override {
     do {
@@ -448,7 +460,7 @@ class XyzReader : public Reader {
       if (!std::isalpha(static_cast<unsigned char>(name[0])) && name != "6")
         lines_.fail("species", fmt::format("\"{}\" is no element", printable(std::string(name), 20)),
                     "write its symbol, C for carbon");
-      frame.carbon[i] = name == "C" || name == "6";
+      frame.species[i] = species_of_symbol(honeycomb_, name);
       for (int k = 0; k < 3; ++k)
         frame.positions[i][k] = angstrom * number(lines_, words[static_cast<std::size_t>(position + k)], "pos");
     }
@@ -507,6 +519,7 @@ class XyzReader : public Reader {
 
   Lines lines_;
   std::int64_t frame_;
+  const Honeycomb& honeycomb_;
   bool states_time_ = false;
 };
 
@@ -538,7 +551,7 @@ struct AtomFiles::Impl {
     else if (f.format == atom_readers::Format::dump)
       reader = std::make_unique<atom_readers::AtomDumpReader>(f.path, species, time_step_fs);
     else
-      reader = std::make_unique<atom_readers::XyzReader>(f.path, frames);
+      reader = std::make_unique<atom_readers::XyzReader>(f.path, frames, species.honeycomb);
   }
 
   // Whether a simulation that went on wrote the frame at which it had been stopped once more, into a further file.
@@ -565,7 +578,7 @@ struct AtomFiles::Impl {
       };
       rearrange(frame.positions);
       rearrange(frame.velocities);
-      rearrange(frame.carbon);
+      rearrange(frame.species);
       rearrange(ids);
     }
     if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
@@ -581,7 +594,9 @@ struct AtomFiles::Impl {
   }
 };
 
-AtomFiles::AtomFiles(std::vector<std::string> paths, double time_step_fs) : impl_(new Impl) {
+AtomFiles::AtomFiles(std::vector<std::string> paths, double time_step_fs, const Honeycomb& honeycomb)
+    : impl_(new Impl) {
+  impl_->species.honeycomb = honeycomb;
   impl_->time_step_fs = time_step_fs;
   bool moving = false;
   std::vector<Impl::File> data;

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "atoms/atom_box.hpp"
+#include "model/honeycomb.hpp"
 
 namespace ropewalk {
 
 struct AtomFrame {
   std::vector<Vector3> positions;   // nm
   std::vector<Vector3> velocities;  // nm/ps; empty: the file has none
-  std::vector<char> carbon;         // whether each atom is carbon
+  std::vector<char> species;        // species of each atom: 1 or 2, that of a sublattice of the tubes; 0: another
   AtomBox box;
   double time = 0;  // ps
   std::int64_t step = 0;
@@ -33,13 +34,13 @@ class AtomSource {
 };
 
 // Frames of several files, one file after another. A data file beside dumps gives the species of their types and is
-// no frame itself. Dumps are sorted by their id, XYZ files keep their order. What carbon is, the files say: by the
-// element, or by the mass of a type; where there is one type and no mass, it is carbon. The first frame of a further file is
-// left out where it has the time of the frame before it.
+// no frame itself. Dumps are sorted by their id, XYZ files keep their order. The species is named by the
+// element, or by the mass of a type; where there is one type and no mass, it is carbon. The first frame of a
+// further file is left out where it has the time of the frame before it.
 class AtomFiles : public AtomSource {
  public:
-  // `time_step_fs`: of the steps of a dump that states no time.
-  AtomFiles(std::vector<std::string> paths, double time_step_fs);
+  // `time_step_fs`: of the steps of a dump that states no time. `honeycomb`: of the tubes.
+  AtomFiles(std::vector<std::string> paths, double time_step_fs, const Honeycomb& honeycomb = {});
   ~AtomFiles() override;
   // Errors name the line of what is wrong.
   bool next(AtomFrame& frame) override;

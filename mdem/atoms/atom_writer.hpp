@@ -1,6 +1,7 @@
 // Atoms of elements as files for other programs: LAMMPS data (atom_style molecular: the molecule is the tube, from
-// 1, and the type the part of a tube, from 1) and extended XYZ (with columns tube and tube_element, from 0).
-// Lengths in Angstrom. Written atom by atom, so that memory does not grow with their number.
+// 1, and the type the part of a tube, from 1; a part of two species has two types, one after the other) and
+// extended XYZ (with columns tube and tube_element, from 0). Lengths in Angstrom. Written atom by atom, so that
+// memory does not grow with their number.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace {
 // Cells of at least the cutoff, of the box or of the box around all atoms.
 class Cells {
  public:
-  Cells(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box) {
+  Cells(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box, double bond) {
     Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity()), high = -low;
     inverse_ = box.inverse();
     origin_ = box.origin;
@@ -29,7 +29,7 @@ class Cells {
       low_[k] = periodic_[k] ? 0 : low[k];
       span_[k] = periodic_[k] ? 1 : std::max(high[k] - low[k], 1e-9);
       const double width = box.width(k) * span_[k];
-      number_[k] = static_cast<long>(std::clamp(std::floor(width / carbon_bond), 1.0, 4096.0));
+      number_[k] = static_cast<long>(std::clamp(std::floor(width / bond), 1.0, 4096.0));
     }
     // No more cells than a few for each atom.
     while (number_[0] * number_[1] * number_[2] > 4 * room) {
@@ -101,21 +101,21 @@ class Cells {
 }  // namespace
 
 BondGraph::BondGraph(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box,
-                     const std::string& file)
+                     const std::string& file, double bond)
     : neighbour_(positions.size()), count_(positions.size(), 0) {
   for (int k = 0; k < 3; ++k)
-    if (box.periodic[static_cast<std::size_t>(k)] && box.width(k) < 2 * carbon_bond)
+    if (box.periodic[static_cast<std::size_t>(k)] && box.width(k) < 2 * bond)
       throw InputError({file, 0, ""},
                        fmt::format("its periodic box is {:.3g} nm wide, less than two bonds", box.width(k)),
                        "repeat it: replicate of LAMMPS, or repeat() of ASE");
-  const Cells cells(positions, wanted, box);
+  const Cells cells(positions, wanted, box, bond);
   const NearestImage nearest(box);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!wanted[i]) continue;
     cells.around(positions[i], [&](std::uint32_t j) {
       if (j == i) return;
       const double d = nearest(positions[j] - positions[i]).squaredNorm();
-      if (d > carbon_bond * carbon_bond) return;
+      if (d > bond * bond) return;
       if (d < atoms_overlap * atoms_overlap)
         throw InputError(
             {file, 0, ""},

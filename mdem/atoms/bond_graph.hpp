@@ -11,7 +11,7 @@
 
 namespace ropewalk {
 
-inline constexpr double carbon_bond = 0.18;     // nm: atoms nearer than this are bonded
+inline constexpr double carbon_bond = 0.18;     // nm: carbon atoms nearer than this are bonded
 inline constexpr double atoms_overlap = 0.072;  // nm: nearer than half a bond no two atoms come
 
 // Up to four neighbours of each atom; more are counted.
@@ -19,9 +19,10 @@ class BondGraph {
  public:
   static constexpr int most = 4;
 
-  // The graph of the atoms with a flag. Throws InputError at `file` where two of them overlap or the box is too short.
+  // The graph of the atoms with a flag, of which those nearer than `bond` (nm) are bonded. Throws InputError at
+  // `file` where two of them overlap or the box is too short.
   BondGraph(const std::vector<Vector3>& positions, const std::vector<char>& wanted, const AtomBox& box,
-            const std::string& file);
+            const std::string& file, double bond = carbon_bond);
 
   std::size_t size() const { return count_.size(); }
   int count(std::size_t i) const { return count_[i]; }  // may be larger than `most`

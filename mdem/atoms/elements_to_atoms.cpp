@@ -119,10 +119,12 @@ void AtomsOfElements::for_each(const std::function<void(const PlacedAtom&)>& vis
                    [&](const SiteRow& row) {
                      const Polar first = polar(reference.chirality, row.first, reference.shape);
                      const TubeSection section = curve.at(first.z);
+                     const double lifted = section.radius + (row.first.second ? 0.5 : -0.5) * reference.shape.lift;
+                     atom.second = row.first.second;
                      for (int k = 0; k < row.sites; ++k) {
                        const double phi = first.phi + 2 * units::pi * k / row.sites;
-                       atom.position = section.centre + section.radius * (std::cos(phi) * section.frame.col(0) +
-                                                                          std::sin(phi) * section.frame.col(1));
+                       atom.position = section.centre + lifted * (std::cos(phi) * section.frame.col(0) +
+                                                                  std::sin(phi) * section.frame.col(1));
                        visit(atom);
                      }
                    });

@@ -3,7 +3,7 @@
 // Element e of a tube (length a at rest) owns the sites of the lattice with e a <= s < (e + 1) a, where s is the
 // height of a site on the tube at rest. A site (s, phi) goes to
 //
-//   x = r(s) + R(s) rho (cos phi, sin phi, 0),   rho = r_0 (1 - nu strain)
+//   x = r(s) + R(s) rho (cos phi, sin phi, 0),   rho = r_0 (1 - nu strain), and half of the lift of its sublattice
 //
 // Between the centres of two elements r is the cubic Hermite curve with the axes as tangents, scaled by the chord,
 // and R turns at an even rate from one orientation to the next. Beyond the outermost centres r is straight and R
@@ -66,6 +66,7 @@ struct TubePart {
 
 struct PlacedAtom {
   int part = 0, tube = 0, element = 0;  // element: counted in the tube
+  bool second = false;                  // whether the atom is of the second sublattice
   Vector3 position;                     // nm
 };
 
@@ -80,6 +81,7 @@ class AtomsOfElements {
   const std::vector<TubePart>& parts() const { return parts_; }
   long count() const;
   long count(const TubePart& part) const;
+  const Honeycomb& honeycomb_of(const TubePart& part) const { return reference_of_tube(part.tube).honeycomb; }
   // Part by part and element by element.
   void for_each(const std::function<void(const PlacedAtom&)>& visit) const;
   // A box that holds all of them.

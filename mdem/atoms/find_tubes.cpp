@@ -66,16 +66,19 @@ Site reduced(Chirality c, Site s) {
   return s;
 }
 
+double reach_of_bonds(const Honeycomb& h) { return h.carbon() ? carbon_bond : 1.27 * h.bond_length(); }
+
 class Search {
  public:
-  Search(const std::vector<Vector3>& positions, const std::vector<char>& carbon, const AtomBox& box,
-         const std::string& file)
+  Search(const std::vector<Vector3>& positions, const std::vector<char>& species, const AtomBox& box,
+         const std::string& file, const Honeycomb& honeycomb)
       : raw_(positions),
-        carbon_(carbon),
+        species_(species),
+        honeycomb_(honeycomb),
         box_(box),
         file_(file),
         nearest_(box),
-        graph_(positions, carbon, box, file),
+        graph_(positions, species, box, file, reach_of_bonds(honeycomb)),
         kind_(positions.size(), Kind::other),
         odd_rings_(positions.size(), {0, 0}),
         labelled_(positions.size(), 0),
@@ -87,23 +90,33 @@ class Search {
 
   FoundTubes go() {
     for (std::size_t i = 0; i < raw_.size(); ++i)
-      if (carbon_[i]) classify(i);
+      if (species_[i]) classify(i);
     std::vector<char> seen(raw_.size(), 0);
     for (std::size_t i = 0; i < raw_.size(); ++i)
-      if (carbon_[i] && !seen[i]) wall(connected(i, seen));
+      if (species_[i] && !seen[i]) wall(connected(i, seen));
     if (found_.tubes.empty())
-      throw InputError(
-          {file_, 0, ""}, "has no carbon nanotube in it",
-          found_.sheets > 0
-              ? fmt::format("{} connected part{} of carbon that {} closed around no axis", found_.sheets,
-                            found_.sheets == 1 ? "" : "s", found_.sheets == 1 ? "is" : "are")
-              : "lengths must be in Angstrom, and bonds of carbon shorter than 1.8 of them");
+      throw InputError({file_, 0, ""}, fmt::format("has no {} nanotube in it", name()),
+                       found_.sheets > 0
+                           ? fmt::format("{} connected part{} of {} that {} closed around no axis", found_.sheets,
+                                         found_.sheets == 1 ? "" : "s", name(), found_.sheets == 1 ? "is" : "are")
+                           : fmt::format("lengths must be in Angstrom, and bonds of {} shorter than {:.3g} of them",
+                                         name(), 10 * reach_of_bonds(honeycomb_)));
     gather();
     sort();
     return std::move(found_);
   }
 
  private:
+  std::string name() const { return honeycomb_.carbon() ? "carbon" : honeycomb_.name; }
+
+  // Whether more atoms stand on the sublattice of the other species than on their own.
+  bool sublattices_swapped(const std::vector<std::uint32_t>& wall) const {
+    long balance = 0;
+    for (const std::uint32_t i : wall)
+      if (labelled_[i]) balance += (species_[i] == 2) == site_[i].second ? 1 : -1;
+    return balance < 0;
+  }
+
   // The smallest ring through the bonds of atom a to b and c: 3 to 7; 0: there is none.
   int ring(std::size_t a, std::size_t b, std::size_t c) const {
     int smallest = 0;
@@ -383,7 +396,7 @@ class Search {
       way.cwiseAbs().maxCoeff(&largest);
       way_ = way[largest] < 0 ? Vector3(-way) : way;
     }
-    if (way.dot(*way_) < 0) {
+    if (honeycomb_.one_species() ? way.dot(*way_) < 0 : sublattices_swapped(wall)) {
       // Upside down the circumference points the other way: the same tube, whose heights rise the other way.
       for (int k = 0; k < 3; ++k) turn();
       c.around = c.around.minus();
@@ -538,7 +551,8 @@ class Search {
   }
 
   const std::vector<Vector3>& raw_;
-  const std::vector<char>& carbon_;
+  const std::vector<char>& species_;
+  const Honeycomb& honeycomb_;
   AtomBox box_;
   std::string file_;
   NearestImage nearest_;
@@ -594,9 +608,9 @@ void turn_sites(FoundTube& tube, int parts) {
     atom.site = reduced(c, {atom.site.i - parts * (c.n / g), atom.site.j - parts * (c.m / g), atom.site.second});
 }
 
-FoundTubes find_tubes(const std::vector<Vector3>& positions, const std::vector<char>& carbon, const AtomBox& box,
-                      const std::string& file) {
-  return Search(positions, carbon, box, file).go();
+FoundTubes find_tubes(const std::vector<Vector3>& positions, const std::vector<char>& species, const AtomBox& box,
+                      const std::string& file, const Honeycomb& honeycomb) {
+  return Search(positions, species, box, file, honeycomb).go();
 }
 
 }  // namespace ropewalk

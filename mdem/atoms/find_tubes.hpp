@@ -1,12 +1,16 @@
-// Carbon nanotubes in a heap of atoms, from their places alone: no order, number, name or type of an atom is used
+// Nanotubes in a heap of atoms, from their places alone: no order, number, name or type of an atom is used
 // but that of its species.
 //
-// Atoms closer than 0.18 nm are bonded. An atom is regular where it has three neighbours and each pair of them
-// closes a ring of six. From one regular atom on, the vectors of the lattice (lattice.hpp) are carried along the
-// bonds: the three neighbours of an atom follow one another in the same sense around its normal everywhere on a
-// wall. Walks that go around the tube come back with another vector: the difference is its (n,m), and the outside
-// of the wall says whether it is that or the mirror image (m,n). Walks that end at the same atom in another image
-// of a periodic box tell the period of an endless tube, which is cut where its box is.
+// Atoms closer than 1.27 bond lengths, 0.18 nm for carbon, are bonded. An atom is regular where it has three
+// neighbours and each pair of them closes a ring of six. From one regular atom on, the vectors of the lattice
+// (lattice.hpp) are carried along the bonds: the three neighbours of an atom follow one another in the same sense
+// around its normal everywhere on a wall. Walks that go around the tube come back with another vector: the
+// difference is its (n,m), and the outside of the wall says whether it is that or the mirror image (m,n). Walks
+// that end at the same atom in another image of a periodic box tell the period of an endless tube, which is cut
+// where its box is.
+//
+// Of two species the first is on the first sublattice. This decides to which end the heights of a tube rise, which
+// of one species is chosen alike for all tubes.
 //
 // Atoms beside defects take their sites from regular neighbours and hand none on. Atoms whose site another one has
 // too, and those that no regular neighbour reaches, have none: they are counted.
@@ -46,9 +50,9 @@ struct FoundTubes {
   long sheets = 0;                 // connected parts of them that are larger than 100 atoms, and no tubes
 };
 
-// `carbon`: of each atom. Throws InputError at `file` where there is no tube, atoms overlap, a box is too short for
-// its bonds, or a tube closes on itself to a ring.
-FoundTubes find_tubes(const std::vector<Vector3>& positions, const std::vector<char>& carbon, const AtomBox& box,
-                      const std::string& file);
+// `species`: of each atom, as AtomFrame has them. Throws InputError at `file` where there is no tube, atoms
+// overlap, a box is too short for its bonds, or a tube closes on itself to a ring.
+FoundTubes find_tubes(const std::vector<Vector3>& positions, const std::vector<char>& species, const AtomBox& box,
+                      const std::string& file, const Honeycomb& honeycomb = {});
 
 }  // namespace ropewalk

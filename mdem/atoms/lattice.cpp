@@ -138,9 +138,14 @@ Polar polar(Chirality c, const Site& site, const TubeShape& shape) {
   return at;
 }
 
+double radius_of(const Site& site, const TubeShape& shape) {
+  return shape.radius + (site.second ? 0.5 : -0.5) * shape.lift;
+}
+
 Vector3 place(Chirality c, const Site& site, const TubeShape& shape) {
   const Polar at = polar(c, site, shape);
-  return {shape.radius * std::cos(at.phi), shape.radius * std::sin(at.phi), at.z};
+  const double r = radius_of(site, shape);
+  return {r * std::cos(at.phi), r * std::sin(at.phi), at.z};
 }
 
 std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexagons, double turn, double bottom) {

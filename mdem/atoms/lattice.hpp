@@ -79,13 +79,14 @@ std::vector<Site> strip_sites(Chirality c, long hexagons);
 long height_in_thirds(Chirality c, const Site& site);
 
 // The cylinder on which the sheet is rolled. The shifts move the second sublattice against the first; a relaxed
-// chiral tube has such shifts.
+// chiral tube has such shifts, and one of two species has a lift.
 struct TubeShape {
   double radius = 0;              // nm
   double length_per_hexagon = 0;  // length of the axis, nm
   double twist = 0;               // rad/nm, right-handed positive
   double arc_shift = 0;           // rad
   double height_shift = 0;        // nm
+  double lift = 0;  // nm: radius of the second sublattice minus that of the first; `radius` is the mean
 };
 
 TubeShape rolled_shape(Chirality c, double a = graphene_lattice_constant);
@@ -95,6 +96,7 @@ struct Polar {
   double phi = 0, z = 0;  // rad, nm
 };
 Polar polar(Chirality c, const Site& site, const TubeShape& shape);
+double radius_of(const Site& site, const TubeShape& shape);  // nm
 Vector3 place(Chirality c, const Site& site, const TubeShape& shape);
 
 // The atoms of a piece of a tube: those of strip_sites(), turned about the axis (rad), from z = `bottom` (nm) upwards.

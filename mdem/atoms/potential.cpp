@@ -69,7 +69,10 @@ std::string file_in_folders(const std::string& name) {
   return "";
 }
 
-std::string find_file(const std::string& name) {
+std::string find_file(const std::string& name, const std::string& folder) {
+  std::error_code ignored;
+  if (const fs::path beside = fs::path(folder) / name; !folder.empty() && fs::is_regular_file(beside, ignored))
+    return fs::absolute(beside).lexically_normal().string();
   if (const std::string path = file_in_folders(name); !path.empty()) return path;
   throw InputError({name, 0, ""},
                    fmt::format("the potential file is not in {}", fmt::join(potential_folders(), ", ")),
@@ -90,11 +93,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// Refuses a line of the user's that would reach beyond itself in an input of LAMMPS.
-void refuse_reach(const std::string& path, int number, const std::string& line) {
-  const auto refuse = [&](const char* what, const char* remedy) {
-    throw InputError({path, number, ""}, what, remedy);
-  };
+}  // namespace
+
+void refuse_reach(const InputError::Place& place, const std::string& line) {
+  const auto refuse = [&](const char* what, const char* remedy) { throw InputError(place, what, remedy); };
   for (const char c : line)
     if (c != '\t' && c != '\r' && has_control_character({&c, 1}))
       refuse("holds a control character", "write plain text");
@@ -105,6 +107,8 @@ void refuse_reach(const std::string& path, int number, const std::string& line) 
   if (line.find_first_of("\"'") != std::string::npos)
     refuse("holds quotes", "write names without quotes and blanks; rename a file if need be");
 }
+
+namespace {
 
 // Potential files name their units in the first line. LAMMPS converts some that say `real`, and believes them.
 void check_units(const std::string& path) {
@@ -138,18 +142,31 @@ Potential find_potential(const std::string& name) {
                     "pair_style and pair_coeff lines",
                     nearest->name));
   }
+  return potential_of_lines({known->name,
+                             known->style,
+                             known->file,
+                             {known->element},
+                             known->cutoff,
+                             known->inner,
+                             known->reference,
+                             known->doi,
+                             ""});
+}
+
+Potential potential_of_lines(const PotentialLines& lines) {
   Potential potential;
-  potential.name = known->name;
-  potential.pair_style = split(known->style, ' ').front();
-  potential.file = find_file(known->file);
+  potential.name = lines.name;
+  potential.pair_style = split(lines.style, ' ').front();
+  potential.file = find_file(lines.file, lines.folder);
   check_units(potential.file);
   potential.file_hash = hash_hex(read_file(potential.file));
-  potential.commands = {fmt::format("pair_style {}", known->style),
-                        fmt::format("pair_coeff * * {} {}", lammps_quoted(potential.file), known->element)};
-  potential.reference = known->reference;
-  potential.doi = known->doi;
-  potential.cutoff = known->cutoff;
-  potential.inner = known->inner;
+  potential.commands = {
+      fmt::format("pair_style {}", lines.style),
+      fmt::format("pair_coeff * * {} {}", lammps_quoted(potential.file), fmt::join(lines.elements, " "))};
+  potential.reference = lines.reference;
+  potential.doi = lines.doi;
+  potential.cutoff = lines.cutoff;
+  potential.inner = lines.inner;
   return potential;
 }
 
@@ -171,7 +188,7 @@ Potential user_potential(const std::string& path) {
     if (!std::getline(lines, line)) break;
     if (++number == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);  // a byte order mark
     if (const auto comment = line.find('#'); comment != std::string::npos) line.resize(comment);
-    refuse_reach(path, number, line);
+    refuse_reach({path, number, ""}, line);
     std::vector<std::string> words;
     std::istringstream stream(line);
     for (std::string word; stream >> word;) words.push_back(word);

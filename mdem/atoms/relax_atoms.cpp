@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "atoms/honeycomb_file.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/plain_text.hpp"
@@ -25,16 +26,21 @@ std::vector<std::string> command_words(const std::string& line) {
 constexpr double reaches_next_tube = 0.28;  // nm
 
 void refuse_other_lines(const Potential& potential, const std::string& name) {
+  const std::size_t elements = potential.honeycomb.one_species() ? 1 : 2;
   if (potential.commands.size() == 2 && command_words(potential.commands[0]).size() >= 2 &&
       command_words(potential.commands[0])[0] == "pair_style") {
     const std::vector<std::string> coeff = command_words(potential.commands[1]);
-    if (coeff.size() == 5 && coeff[0] == "pair_coeff" && coeff[1] == "*" && coeff[2] == "*") return;
+    if (coeff.size() == 4 + elements && coeff[0] == "pair_coeff" && coeff[1] == "*" && coeff[2] == "*") return;
   }
-  throw InputError({name, 0, "--potential"}, "has lines that several tubes cannot share",
-                   "take one with pair_style STYLE and pair_coeff * * FILE C");
+  throw InputError(
+      {name, 0, "--potential"}, "has lines that several tubes cannot share",
+      fmt::format("take one with pair_style STYLE and pair_coeff * * FILE {}",
+                  elements == 1 ? potential.honeycomb.species[0]
+                                : potential.honeycomb.species[0] + " " + potential.honeycomb.species[1]));
 }
 
-std::vector<double> part_energies(const std::string& path, std::size_t parts) {
+// The energies of all types, `species` of them a part.
+std::vector<double> part_energies(const std::string& path, std::size_t parts, std::size_t species) {
   std::istringstream lines(read_file(path));
   std::vector<double> energies;
   bool in_block = false;
@@ -47,11 +53,28 @@ std::vector<double> part_energies(const std::string& path, std::size_t parts) {
     }
     energies.push_back(std::strtod(words[1].c_str(), nullptr));
   }
-  if (energies.size() != parts)
-    throw LammpsError(fmt::format("LAMMPS left {} of {} energies in {}", energies.size(), parts, path));
-  for (const double energy : energies)
-    if (!std::isfinite(energy)) throw LammpsError(fmt::format("LAMMPS left no finite energy in {}", path));
-  return energies;
+  if (energies.size() != parts * species)
+    throw LammpsError(fmt::format("LAMMPS left {} of {} energies in {}", energies.size(), parts * species, path));
+  std::vector<double> of_parts(parts, 0);
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    if (!std::isfinite(energies[k])) throw LammpsError(fmt::format("LAMMPS left no finite energy in {}", path));
+    of_parts[k / species] += energies[k];
+  }
+  return of_parts;
+}
+
+// The laws between all atoms of two parts, by their species.
+std::string pair_lines_of_species(const AtomForces& forces, std::size_t parts) {
+  std::string text;
+  for (std::size_t p = 0; p < parts; ++p)
+    for (std::size_t q = p + 1; q < parts; ++q)
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j) {
+          const PairLaw& law = forces.potential.honeycomb.pairs[i + j];
+          text += fmt::format("pair_coeff {} {} lj/cut {:.8f} {:.6f}\n", 2 * p + i + 1, 2 * q + j + 1, law.epsilon,
+                              law.sigma / angstrom);
+        }
+  return text;
 }
 
 }  // namespace
@@ -67,6 +90,7 @@ std::string pair_lines(const AtomForces& forces, std::size_t parts) {
   const std::vector<std::string> coeff = command_words(potential.commands.at(1));
   std::string own = style[1];
   for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
+  const auto species = static_cast<std::size_t>(forces.species());
   const std::size_t instances = potential.cutoff < reaches_next_tube ? 1 : parts;
   text = "pair_style hybrid/overlay";
   for (std::size_t p = 0; p < instances; ++p) text += " " + own;
@@ -74,9 +98,11 @@ std::string pair_lines(const AtomForces& forces, std::size_t parts) {
   for (std::size_t p = 1; p <= instances; ++p) {
     text +=
         fmt::format("pair_coeff * * {}", style[1]) + (instances > 1 ? fmt::format(" {}", p) : "") + " " + coeff[3];
-    for (std::size_t k = 1; k <= parts; ++k) text += instances == 1 || k == p ? " " + coeff[4] : " NULL";
+    for (std::size_t k = 1; k <= parts; ++k)
+      for (std::size_t s = 4; s < 4 + species; ++s) text += instances == 1 || k == p ? " " + coeff[s] : " NULL";
     text += "\n";
   }
+  if (species == 2) return text + pair_lines_of_species(forces, parts);
   for (std::size_t p = 1; p < parts; ++p)
     text += fmt::format("pair_coeff {} {}*{} lj/cut {:.8f} {:.6f}\n", p, p + 1, parts, forces.epsilon,
                         forces.sigma / angstrom);
@@ -87,6 +113,11 @@ AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string&
   AtomForces out;
   std::string name = potential;
   for (const ParameterSet& set : sets) {
+    if (set.honeycomb.name != sets.front().honeycomb.name)
+      throw InputError(
+          {set.path, 0, "lattice"},
+          fmt::format("is of {}, and the first set of {}", set.honeycomb.name, sets.front().honeycomb.name),
+          "take sets of one honeycomb");
     if (potential.empty()) {
       const std::string own = provenance_value(set, "potential");
       if (own.empty() || own == "user")
@@ -112,7 +143,8 @@ AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string&
                      "is missing: the set does not say how atoms of two tubes attract",
                      "take a set that ropewalk calibrate made");
   const bool file = name.find_first_of("/.") != std::string::npos;
-  out.potential = file ? user_potential(name) : find_potential(name);
+  out.potential = file ? user_potential(name) : potential_of(sets.front(), name);
+  out.potential.honeycomb = sets.front().honeycomb;
   refuse_other_lines(out.potential, name);
   return out;
 }
@@ -157,8 +189,9 @@ std::vector<PartEnergies> relax_atoms(const std::string& folder, const std::stri
                                       std::size_t parts, const std::vector<AtomRange>& held,
                                       const LammpsOptions& options) {
   run_lammps(folder, stem, relax_input(stem, forces, parts, held), options);
-  const std::vector<double> before = part_energies(folder + "/" + stem + "-before.txt", parts),
-                            after = part_energies(folder + "/" + stem + "-after.txt", parts);
+  const auto species = static_cast<std::size_t>(forces.species());
+  const std::vector<double> before = part_energies(folder + "/" + stem + "-before.txt", parts, species),
+                            after = part_energies(folder + "/" + stem + "-after.txt", parts, species);
   std::vector<PartEnergies> out;
   for (std::size_t p = 0; p < parts; ++p) out.push_back({before[p], after[p]});
   return out;

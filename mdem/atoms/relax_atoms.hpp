@@ -16,12 +16,15 @@ namespace ropewalk {
 struct AtomForces {
   Potential potential;
   double epsilon = 0, sigma = 0, cutoff = 0;  // eV, nm
+  int species() const { return potential.honeycomb.one_species() ? 1 : 2; }
 };
-// Forces between the atoms of tubes whose sets agree on the Lennard-Jones law. `potential`: a name or a file of
-// pair_style and pair_coeff lines; empty: that of the sets. Throws InputError where they name none, or several.
+// Forces between the atoms of tubes whose sets agree on the honeycomb and on the Lennard-Jones law. `potential`: a
+// name or a file of pair_style and pair_coeff lines; empty: that of the sets. Throws InputError where they name
+// none, or several.
 AtomForces atom_forces(const std::vector<ParameterSet>& sets, const std::string& potential);
 
-// The pair_style and pair_coeff lines for tubes whose atoms are of the types 1 .. parts.
+// The pair_style and pair_coeff lines for tubes whose atoms are of the types 1 .. parts; of two species, two types
+// a part.
 std::string pair_lines(const AtomForces& forces, std::size_t parts);
 
 // LAMMPS input that reads STEM.data, in which each part of a tube is a type. It writes STEM-relaxed.data, and the

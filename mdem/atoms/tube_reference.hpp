@@ -7,6 +7,7 @@
 namespace ropewalk {
 
 struct TubeReference {
+  Honeycomb honeycomb;
   Chirality chirality;
   TubeShape shape;     // relaxed, with its natural twist
   double poisson = 0;  // -d ln r / d strain

@@ -47,6 +47,20 @@ int elements_below(const TubeReference& reference, long top, double element_leng
   return static_cast<int>(std::floor(end / element_length + 1e-6));
 }
 
+// That of the sets, which are of one; carbon where none is named.
+Honeycomb honeycomb_of(const CoarsenSettings& settings) {
+  Honeycomb out;
+  for (std::size_t k = 0; k < settings.parameters.size(); ++k) {
+    const ParameterSet set = read_parameters(find_parameters(settings.parameters[k], ""));
+    if (k > 0 && set.honeycomb.name != out.name)
+      throw InputError({set.path, 0, "--parameters"},
+                       fmt::format("is a set of {}, and the first one of {}", set.honeycomb.name, out.name),
+                       "read the tubes of one honeycomb at a time");
+    out = set.honeycomb;
+  }
+  return out;
+}
+
 std::string chirality_name(Chirality c) { return fmt::format("({},{})", c.n, c.m); }
 
 // A shipped set; Tersoff's potential is preferred.
@@ -130,12 +144,21 @@ std::string words_of(const CoarseTube& t) {
 }
 
 Coarsening::Coarsening(const CoarsenSettings& settings)
-    : Coarsening(settings, std::make_unique<AtomFiles>(settings.files, settings.time_step_fs)) {}
+    : Coarsening(settings,
+                 std::make_unique<AtomFiles>(settings.files, settings.time_step_fs, honeycomb_of(settings))) {}
 
 Coarsening::Coarsening(const CoarsenSettings& settings, std::unique_ptr<AtomSource> atoms)
-    : settings_(settings), atoms_(std::move(atoms)) {
+    : settings_(settings), honeycomb_(honeycomb_of(settings)), atoms_(std::move(atoms)) {
   if (!atoms_->next(frame_)) throw InputError({atoms_->file(), 0, ""}, "has no frame", "give one or more");
-  for (const char carbon : frame_.carbon) foreign_ += carbon ? 0 : 1;
+  bool second = honeycomb_.one_species();
+  for (const char species : frame_.species) {
+    foreign_ += species ? 0 : 1;
+    second = second || species == 2;
+  }
+  if (!second)
+    throw InputError({atoms_->file(), 0, ""},
+                     fmt::format("has no atom of {}, and the sets are of {}", honeycomb_.species[1], honeycomb_.name),
+                     "give a file that names the species of its atoms, or sets of its tubes");
   find();
   choose_sets();
   fit_first();
@@ -143,19 +166,19 @@ Coarsening::Coarsening(const CoarsenSettings& settings, std::unique_ptr<AtomSour
 
 void Coarsening::find() {
   if (frame_.box.periodic_known) {
-    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
+    found_ = find_tubes(frame_.positions, frame_.species, frame_.box, atoms_->file(), honeycomb_);
     return;
   }
   // A data file does not say whether its box is periodic. In a box shrunk around open tubes their ends would touch.
   AtomBox open = frame_.box;
   open.periodic = {false, false, false};
   try {
-    found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
+    found_ = find_tubes(frame_.positions, frame_.species, frame_.box, atoms_->file(), honeycomb_);
     return;
   } catch (const InputError&) {
   }
   frame_.box = open;
-  found_ = find_tubes(frame_.positions, frame_.carbon, frame_.box, atoms_->file());
+  found_ = find_tubes(frame_.positions, frame_.species, frame_.box, atoms_->file(), honeycomb_);
 }
 
 void Coarsening::choose_sets() {
@@ -164,7 +187,7 @@ void Coarsening::choose_sets() {
   std::vector<int> types;
   for (const FoundTube& tube : found_.tubes) {
     const auto same = [&](const ParameterSet& set) {
-      return set.chirality.n == tube.chirality.n && set.chirality.m == tube.chirality.m;
+      return set.walls.empty() && set.chirality.n == tube.chirality.n && set.chirality.m == tube.chirality.m;
     };
     auto at = std::find_if(sets_.begin(), sets_.end(), same);
     if (at == sets_.end()) {

@@ -14,7 +14,7 @@ namespace ropewalk {
 
 struct CoarsenSettings {
   std::vector<std::string> files;       // of one simulation, or names of what is read elsewhere
-  std::vector<std::string> parameters;  // sets; empty: shipped ones of the chiralities that are found
+  std::vector<std::string> parameters;  // sets; empty: shipped ones of the carbon tubes that are found
   double element_length = 0;            // nm; 0: that of the first set
   double time_step_fs = 1;              // length of MD steps in dumps that state no time
 };
@@ -23,7 +23,7 @@ struct CoarsenSettings {
 struct CoarseTube {
   Chirality chirality;
   int elements = 0;
-  long atoms = 0, without_site = 0;  // carbon atoms in elements, and those of its wall that are in none
+  long atoms = 0, without_site = 0;  // atoms in elements, and those of its wall that are in none
   long pentagons = 0, heptagons = 0, open_atoms = 0, crowded = 0;
   bool cap_below = false, cap_above = false, endless = false;
   double radius = 0, misfit = 0;  // nm: mean, and root mean square of the distance of atoms from their places
@@ -42,7 +42,7 @@ class Coarsening {
   const std::vector<ParameterSet>& sets() const { return sets_; }
   const Topology& topology() const { return topology_; }  // types with their length and radius alone
   const std::vector<CoarseTube>& tubes() const { return tubes_; }
-  long loose() const { return found_.loose; }  // carbon atoms in no tube
+  long loose() const { return found_.loose; }  // atoms of its species in no tube
   long foreign() const { return foreign_; }    // atoms of other species
   bool states_time() const { return atoms_->states_time(); }
   bool cut_off() const { return atoms_->cut_off(); }
@@ -66,6 +66,7 @@ class Coarsening {
   double misfit(std::size_t tube) const;
 
   CoarsenSettings settings_;
+  Honeycomb honeycomb_;
   std::unique_ptr<AtomSource> atoms_;
   AtomFrame frame_;
   FoundTubes found_;

@@ -20,14 +20,22 @@ struct Grade {
 
 // good: stiffnesses known to 1 %, the line law within 1 % of the well of the surface integral, 0.5 to 2 nm wide,
 // and numbers that agree with one another: shell, limits of the model, anharmonic law, pull, well. unfit: a
-// stiffness known to no more than a half, a wall that is not of carbon, the line law off by more than a tenth of
+// stiffness known to no more than a half, a wall that no sheet of its species has, the line law off by more than a tenth of
 // the well, or wider than 4.2 nm, where tubes may collapse by themselves (J. A. Elliott et al., Phys. Rev. Lett.
 // 92, 095501 (2004), DOI 10.1103/PhysRevLett.92.095501). Filaments are limited: no atoms stand behind their numbers.
 Grade grade_of(const ParameterSet& set);
 
 // EA/(2 pi r), N/m: the stiffness of the sheet that the tube is rolled from.
 double wall_stiffness(const ParameterSet& set);
-inline constexpr double softest_wall = 200, stiffest_wall = 500;  // stiffness of a wall of carbon, N/m
+// N/m, what it may be: carbon in any potential has 250 to 355. Other sheets of one layer lie far apart, from 60 (silicon)
+// to that of carbon.
+struct WallRange {
+  double softest, stiffest;
+  const char* of;  // "a wall of carbon"
+};
+inline WallRange wall_range(const Honeycomb& honeycomb) {
+  return honeycomb.carbon() ? WallRange{200, 500, "a wall of carbon"} : WallRange{30, 500, "a sheet of one layer"};
+}
 
 // Largest error of the set's own line law against the surface integral, over the well, as the set states it.
 // Negative: it states none.

@@ -6,8 +6,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "io/files.hpp"
@@ -53,11 +55,13 @@ class Reader {
     set_.hash = hash_hex(text_);
     set_.filament = top_.has("filament");
     read_meta(top_.table("meta"));
+    if (top_.has("lattice")) read_lattice(top_.table("lattice"));
     if (set_.filament)
       read_filament(top_.table("filament"));
     else
       read_tube(top_.table("tube"));
     read_bond(top_.table("bond"));
+    if (!set_.walls.empty()) read_holding(top_.table("held"));
     const TomlTable contact = top_.table("contact");
     for (const LawNumbers& law : law_numbers())
       if (contact.has(law.name)) set_.laws[law.name] = law.read({contact.table(law.name), set_, number_of_law()});
@@ -75,7 +79,7 @@ class Reader {
  private:
   double quantity(const TomlTable& section, const std::string& key, const std::string& unit, const Bounds& bounds) {
     Quantity out = read_quantity(section, key, unit, bounds);
-    out.of_carbon = !set_.filament;
+    out.of_carbon = !set_.filament && set_.honeycomb.carbon();
     order_.emplace_back(section.line(key), out);
     return out.value;
   }
@@ -108,6 +112,10 @@ class Reader {
         throw t.error("chirality", "is that of a tube, and the set has [filament]", "take one of them away");
       return;
     }
+    if (t.has("walls")) {
+      read_walls(t);
+      return;
+    }
     if (!t.has("chirality"))
       throw t.error("chirality", "is missing",
                     "add chirality = [n, m]; what has no lattice of carbon has [filament] in place of [tube]");
@@ -117,20 +125,112 @@ class Reader {
       throw t.error("chirality", "is not that of a tube", "write [n, m], neither negative, not both 0");
   }
 
+  void read_lattice(const TomlTable& t) {
+    if (set_.filament)
+      throw top_.error("lattice", "is that of a tube, and the set has [filament]", "take one of them away");
+    Honeycomb& h = set_.honeycomb;
+    h.name = t.string("name");
+    check_name_of_honeycomb(t, "name", h.name);
+    const std::vector<std::string> species = t.strings("species");
+    if (species.size() != 2) throw t.error("species", "are not two", "name those of both sublattices: [\"B\", \"N\"]");
+    for (std::size_t k = 0; k < 2; ++k) {
+      check_element(t, "species", species[k]);
+      h.species[k] = species[k];
+      h.atomic_weight[k] = quantity(t, fmt::format("weight_{}", k + 1), "u", Bounds::range(1, 300));
+    }
+    h.lattice_constant = std::sqrt(3.0) * quantity(t, "bond_length", "nm", Bounds::range(0.1, 0.4));
+    constexpr const char* of[] = {"11", "12", "22"};
+    for (std::size_t k = 0; k < 3; ++k) {
+      h.pairs[k].epsilon = quantity(t, fmt::format("epsilon_{}", of[k]), "eV", Bounds::positive(1));
+      h.pairs[k].sigma = quantity(t, fmt::format("sigma_{}", of[k]), "nm", Bounds::range(0.2, 0.6));
+    }
+  }
+
+  void read_walls(const TomlTable& t) {
+    if (t.has("chirality"))
+      throw t.error("walls", "are those of a tube that has meta.chirality too", "take one of them away");
+    for (const std::vector<double>& nm : t.rows("walls", Bounds::range(0, 1000), 2)) {
+      Wall wall;
+      wall.chirality = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
+      if (wall.chirality.n != nm[0] || wall.chirality.m != nm[1] || !wall.chirality.valid())
+        throw t.error("walls", "are not those of a tube", "write [[n, m], ...], inside first");
+      set_.walls.push_back(wall);
+    }
+    if (set_.walls.size() < 2)
+      throw t.error("walls", "are fewer than two", "write chirality = [n, m] for a tube of one wall");
+    set_.chirality = set_.walls.back().chirality;
+    static const Words<bool> carriers = {{"outer", true}, {"all", false}};
+    set_.outer_carries = t.word("carried_by", carriers);
+  }
+
+  // The walls, which stand inside of one another.
+  void read_each_wall(const TomlTable& t) {
+    const Bounds stiffness = Bounds::positive(1e9);
+    double density = 0, inside = 0;
+    for (std::size_t k = 0; k < set_.walls.size(); ++k) {
+      Wall& wall = set_.walls[k];
+      const TomlTable own = t.table(fmt::format("{}", k + 1));
+      wall.radius = quantity(own, "radius", "nm", Bounds::positive(1e3));
+      check_geometry(own, "radius", wall.radius, tube_radius(wall.chirality), "nm", wall.chirality);
+      wall.atoms_per_length = quantity(own, "atoms_per_length", "1/nm", Bounds::positive());
+      check_geometry(own, "atoms_per_length", wall.atoms_per_length, ropewalk::atoms_per_length(wall.chirality), "1/nm",
+                     wall.chirality);
+      for (const char* key : {"EI", "GJ"}) quantity(own, key, "nN nm^2", stiffness);
+      quantity(own, "EA", "nN", stiffness);
+      if (wall.radius <= inside)
+        throw own.error("radius", fmt::format("is {} nm, and the wall inside has {} nm", wall.radius, inside),
+                        "name the walls from inside to outside");
+      inside = wall.radius;
+      density += wall.atoms_per_length;
+    }
+    const auto agree = [&](const char* key, double said, double of_walls, const char* unit) {
+      if (std::fabs(said / of_walls - 1) > 1e-6)
+        throw top_.table("tube").error(key, fmt::format("is {} {}", said, unit),
+                                       fmt::format("the walls have {:.10g}", of_walls));
+    };
+    agree("contact_radius", set_.radius, inside, "nm");
+    agree("atoms_per_length", set_.atoms_per_length, density, "1/nm");
+  }
+
+  // The tube by both ways of holding it, of which the bond has one.
+  void read_holding(const TomlTable& t) {
+    for (const char* way : {"all", "outer"}) {
+      const TomlTable own = t.table(way);
+      const bool used = set_.outer_carries == (way == std::string("outer"));
+      for (const auto& [key, unit, bond] : {std::tuple{"EA", "nN", set_.bond.stretch},
+                                            std::tuple{"EI", "nN nm^2", set_.bond.bend},
+                                            std::tuple{"GJ", "nN nm^2", set_.bond.twist}}) {
+        const double value = quantity(own, key, unit, Bounds::positive(1e9));
+        if (used && std::fabs(bond / (value * units::nN_nm) - 1) > 1e-6)
+          throw top_.table("meta").error("carried_by", fmt::format("is \"{}\", and bond.{} is not that of [held.{}]", way, key, way),
+                           fmt::format("write bond.{} = {} {}", key, value, unit));
+      }
+    }
+  }
+
   // A wrong unit or chirality changes the value by a factor; relaxation changes the rolled sheet by only 2 %.
-  void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
+  void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit,
+                      Chirality of) const {
     if (std::fabs(value / rolled - 1.0) < 0.1) return;
     throw t.error(
         key, fmt::format("is {} {}", value, unit),
-        fmt::format("a ({},{}) tube has about {:.4g} {}", set_.chirality.n, set_.chirality.m, rolled, unit));
+        fmt::format("a ({},{}) tube has about {:.4g} {}", of.n, of.m, rolled, unit));
   }
 
   void read_tube(const TomlTable& t) {
+    if (!set_.walls.empty()) {
+      set_.radius = quantity(t, "contact_radius", "nm", Bounds::positive());
+      set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
+      set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
+      read_each_wall(top_.table("wall"));
+      return;
+    }
     set_.radius = quantity(t, "radius", "nm", Bounds::positive());
-    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality), "nm");
+    const double a = set_.honeycomb.lattice_constant;
+    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality, a), "nm", set_.chirality);
     set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
-    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality),
-                   "1/nm");
+    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality, a), "1/nm",
+                   set_.chirality);
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
   }
 
@@ -264,6 +364,7 @@ class Reader {
     quantity(t, "energy_per_atom", "eV", Bounds::range(-100, 0));
     if (t.has("sublattice_turn")) quantity(t, "sublattice_turn", "rad", Bounds::range(-1, 1));
     if (t.has("sublattice_rise")) quantity(t, "sublattice_rise", "nm", Bounds::range(-0.1, 0.1));
+    if (t.has("sublattice_lift")) quantity(t, "sublattice_lift", "nm", Bounds::range(-0.1, 0.1));
   }
 
   void read_validity(const TomlTable& t) {
@@ -377,11 +478,44 @@ std::string provenance_value(const ParameterSet& set, const std::string& key) {
 }
 
 std::string tube_name(const ParameterSet& set) {
-  return set.filament ? set.name : fmt::format("({},{})", set.chirality.n, set.chirality.m);
+  if (set.filament) return set.name;
+  std::string text;
+  for (const Wall& wall : set.walls)
+    text += fmt::format("{}({},{})", text.empty() ? "" : "@", wall.chirality.n, wall.chirality.m);
+  if (text.empty()) text = fmt::format("({},{})", set.chirality.n, set.chirality.m);
+  return set.honeycomb.carbon() ? text : text + " " + set.honeycomb.name;
 }
 
 void refuse_filament(const ParameterSet& set, const std::string& so, const std::string& instead) {
   if (set.filament) throw InputError({set.path, 0, "filament"}, "has no lattice of atoms: " + so, instead);
+}
+
+void refuse_other_than_carbon(const ParameterSet& set, const std::string& what) {
+  if (set.filament || set.honeycomb.carbon()) return;
+  throw InputError({set.path, 0, "lattice"}, fmt::format("is of {}, and {}", set.honeycomb.name, what),
+                   "take a set of a carbon tube");
+}
+
+void check_element(const TomlTable& t, const std::string& key, const std::string& symbol) {
+  const auto letter = [](char c, char from, char to) { return c >= from && c <= to; };
+  if (!symbol.empty() && symbol.size() <= 2 && letter(symbol[0], 'A', 'Z') &&
+      (symbol.size() == 1 || letter(symbol[1], 'a', 'z')))
+    return;
+  throw t.error(key, fmt::format("names \"{}\", which is no element", printable(symbol, 20)),
+                "write symbols, as \"B\" or \"Si\"");
+}
+
+void check_name_of_honeycomb(const TomlTable& t, const std::string& key, const std::string& name) {
+  const bool letters = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+  if (letters && name.size() <= 12 && name != "C") return;
+  throw t.error(key, fmt::format("is \"{}\"", printable(name, 40)),
+                name == "C" ? "carbon is built in: leave its table away"
+                            : "write up to 12 letters and digits, as \"BN\": sets are named by them");
+}
+
+void refuse_several_walls(const ParameterSet& set, const std::string& so, const std::string& instead) {
+  if (set.walls.empty()) return;
+  throw InputError({set.path, 0, "meta.walls"}, fmt::format("are {}: {}", tube_name(set), so), instead);
 }
 
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
@@ -438,7 +572,15 @@ std::string pull_row_text(const ParameterSet& set) {
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
   text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\n", parameter_format, toml_string(set.name));
-  if (!set.filament) text += fmt::format("chirality = [{}, {}]\n", set.chirality.n, set.chirality.m);
+  if (!set.walls.empty()) {
+    std::vector<std::string> walls;
+    for (const Wall& wall : set.walls)
+      walls.push_back(fmt::format("[{}, {}]", wall.chirality.n, wall.chirality.m));
+    text += fmt::format("walls = [{}]\ncarried_by = \"{}\"\n", fmt::join(walls, ", "),
+                        set.outer_carries ? "outer" : "all");
+  } else if (!set.filament) {
+    text += fmt::format("chirality = [{}, {}]\n", set.chirality.n, set.chirality.m);
+  }
   text += fmt::format("reference = {}\n", toml_string(set.reference));
   if (!set.doi.empty()) text += fmt::format("doi = {}\n", toml_string(set.doi));
   std::string section;
@@ -447,6 +589,9 @@ std::string parameters_text(const ParameterSet& set, const std::string& comment)
     if (q.key.substr(0, dot) != section) {
       section = q.key.substr(0, dot);
       text += fmt::format("\n[{}]\n", section);
+      if (section == "lattice")
+        text += fmt::format("name = {}\nspecies = [{}, {}]\n", toml_string(set.honeycomb.name),
+                            toml_string(set.honeycomb.species[0]), toml_string(set.honeycomb.species[1]));
       for (const LawNumbers& law : law_numbers())
         if (law.rows && set.laws.count(law.name)) text += law.rows(set.laws.at(law.name), section);
       if (section == "bond.pull") text += pull_row_text(set);

@@ -30,7 +30,7 @@
 //           where the rope is warm
 //   energy_drift    energy that the account of energy misses, over all energy converted since the start:
 //           energy_drift() of observe/observables.hpp. With steps that the program chooses it stays below 0.02,
-//           cold and at 300 K. The step control (run/step_control.hpp) goes back where 0.03 are lost within a
+//           cold and at 300 K. The step control (sim/dynamics/step_control.hpp) goes back where 0.03 are lost within a
 //           window; this limit sees what smaller losses add up to. Judged from the end of the first window on,
 //           where a row of the log is written
 //

@@ -118,7 +118,7 @@ class FramesOfPython : public AtomSource {
     frame = AtomFrame();
     frame.positions = vectors(parts[0]);
     if (!parts[1].is_none()) frame.velocities = vectors(parts[1]);
-    frame.carbon = carbon_;
+    frame.species = carbon_;
     if (!parts[2].is_none()) {
       const py::array_t<double, py::array::c_style | py::array::forcecast> rows = parts[2].cast<py::array>();
       frame.box.edges = Eigen::Map<const Eigen::Matrix3d>(rows.data());  // columns, as Eigen stores them

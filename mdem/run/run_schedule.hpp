@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {

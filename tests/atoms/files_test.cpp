@@ -64,7 +64,7 @@ TEST_F(AtomFile, DumpIsSortedScaledAndTilted) {
   EXPECT_NEAR((frame.positions[0] - Vector3(0.5, 0, 0.3)).norm(), 0, 1e-12);
   EXPECT_NEAR((frame.positions[1] - Vector3(0.5, 1, 0)).norm(), 0, 1e-12);
   EXPECT_NEAR((frame.positions[2] - Vector3(1.25, 0.5, 1.5)).norm(), 0, 1e-12);
-  EXPECT_EQ(frame.carbon, (std::vector<char>{1, 1, 0}));
+  EXPECT_EQ(frame.species, (std::vector<char>{1, 1, 0}));
   EXPECT_NEAR((frame.velocities[1] - Vector3(0, 0.2, 0)).norm(), 0, 1e-12);
 }
 
@@ -77,8 +77,8 @@ TEST_F(AtomFile, DataFileTellsTheSpeciesOfADump) {
       file("a.dump",
            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 "
            "10\nITEM: ATOMS id type x y z\n2 1 4 5 6\n1 2 1 2 3\n");
-  EXPECT_EQ(first({data}).carbon, (std::vector<char>{1, 0}));
-  EXPECT_EQ(first({dump, data}).carbon, (std::vector<char>{1, 0}));
+  EXPECT_EQ(first({data}).species, (std::vector<char>{1, 0}));
+  EXPECT_EQ(first({dump, data}).species, (std::vector<char>{1, 0}));
   EXPECT_NEAR((first({data}).positions[1] - Vector3(0.4, 0.5, 0.6)).norm(), 0, 1e-12);
   EXPECT_NE(refusal({dump}).find("no known species"), std::string::npos);
 }
@@ -92,7 +92,7 @@ TEST_F(AtomFile, ExtendedXyzHasABoxTimeAndColumnsOfItsOwn) {
   EXPECT_NEAR(frame.time, 3.5, 1e-12);
   EXPECT_NEAR((frame.box.edges.col(1) - Vector3(0.2, 1, 0)).norm(), 0, 1e-12);
   EXPECT_FALSE(frame.box.periodic[1]);
-  EXPECT_EQ(frame.carbon, (std::vector<char>{1, 0}));
+  EXPECT_EQ(frame.species, (std::vector<char>{1, 0}));
   EXPECT_NEAR((frame.positions[1] - Vector3(0.4, 0.5, 0.6)).norm(), 0, 1e-12);
 }
 

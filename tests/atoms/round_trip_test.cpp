@@ -48,6 +48,33 @@ State found_again(const Elements& rod, const TubeReference& reference, unsigned 
   return state;
 }
 
+// A tube of two species is found with the first one on the first sublattice, wherever its heights rise.
+TEST(TwoSpecies, AreFoundOnTheirSublattices) {
+  Honeycomb h;
+  h.name = "BN";
+  h.species = {"B", "N"};
+  h.lattice_constant = 0.2511;
+  const Chirality c{6, 2};
+  TubeShape shape = rolled_shape(c, h.lattice_constant);
+  shape.lift = 0.002;
+  const std::vector<Site> sites = strip_sites(c, 60);
+  for (const bool upside_down : {false, true}) {
+    std::vector<Vector3> atoms;
+    std::vector<char> species;
+    const Eigen::AngleAxisd turn(upside_down ? units::pi : 0.0, Vector3::UnitX());
+    for (const Site& site : sites) {
+      atoms.push_back(turn * place(c, site, shape));
+      species.push_back(site.second ? 2 : 1);
+    }
+    const FoundTubes found = find_tubes(atoms, species, {}, "atoms", h);
+    ASSERT_EQ(found.tubes.size(), 1u);
+    EXPECT_EQ(found.tubes[0].chirality.n, 6);
+    EXPECT_EQ(found.tubes[0].chirality.m, 2);
+    ASSERT_GT(found.tubes[0].atoms.size(), 90u);
+    for (const LabelledAtom& atom : found.tubes[0].atoms) EXPECT_EQ(atom.site.second, species[atom.atom] == 2);
+  }
+}
+
 class RoundTrip : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RoundTrip, GivesTheElementsUpToTheLimitsOfTheSet) {

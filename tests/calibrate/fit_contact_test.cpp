@@ -147,7 +147,7 @@ TEST(UniversalFit, HoldsBetweenItsRadii) {
     EXPECT_LT(std::fabs(p.depth_error), 5e-3) << p.r_i << " " << p.r_j;
   }
   for (const auto& [ri, rj] : {std::pair{0.34, 0.34}, {0.6, 0.6}, {0.6, 0.8}, {1.2, 1.2}, {0.34, 1.4}}) {
-    const LineTargets targets(PairIntegral({}, shell(ri), shell(rj)), ri + rj, line_gaps({}));
+    const LineTargets targets(WallsIntegral({}, shell(ri), shell(rj)), ri + rj, line_gaps({}));
     const LineDensity d = u.law.density(ri, density(), rj, density());
     EXPECT_LT(targets.error(d), 4e-3) << ri << " " << rj;
     expect_sound(d);

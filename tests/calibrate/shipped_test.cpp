@@ -196,7 +196,7 @@ TEST(AtomByAtom, MeanOverRegistryIsTheSurfaceIntegral) {
     const AtomLaw law;
     const Shell shell{cell.radius, graphene_density(graphene_lattice_constant)};
     const Well well = parallel_well(law, shell, shell);
-    const RegistrySpread spread = registry_spread(law, column, column, well.distance);
+    const RegistrySpread spread = registry_spread({law, law, law}, column, column, well.distance);
     EXPECT_NEAR(spread.mean / well.energy, 1, 5e-3) << c.n << "," << c.m;
     EXPECT_GT(spread.deviation, 0);
     EXPECT_LT(spread.deviation, 0.03 * std::fabs(well.energy));

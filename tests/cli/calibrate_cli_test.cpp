@@ -40,6 +40,9 @@ TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
   expect_refusal("--chirality 5,5 --quiet --lj-cutoff 0.4", "at least 2 sigma");
   expect_refusal("--chirality 5,5 --quiet --lj 3", "--lj");
   expect_refusal("--chirality 5,5 --quiet --potential tersof", "tersoff");
+  expect_refusal("--chirality 5,5 --quiet --atoms nothing", "--atoms: is \"nothing\"; name one of BN, C");
+  expect_refusal("--chirality 5,5 --quiet --atoms BN --potential lcbop", "'lcbop' is none of BN");
+  expect_refusal("--chirality 5,5 --quiet --atoms BN --lj 3e-3,0.34", "--lj: is one law, and BN has one for each pair");
   expect_refusal("--chirality 5,5 --quiet --potential-file nowhere.txt", "nowhere.txt");
   expect_refusal("--chirality 5,5 --quiet --out set.txt", "--out");
   expect_refusal("--chirality 5,5 --quiet --out no/such/set.toml", "make the directory");

@@ -52,7 +52,10 @@ class PeriodicLoad : public Load {
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
-  std::vector<int> reads(const Topology& topology) const override;  // the originals
+  std::vector<int> reads(const Topology& topology) const override;  // the originals, one for each image
+  // On several processes `elements` then has the images and behind them their originals, in the same order, as
+  // elements of a state that has all of them.
+  void keep(const std::vector<std::size_t>&, const LoadProcesses&) override { numbers_ = elements; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
   void constrain_after(const Forces& total, double dt, const Topology&, double time, double ahead,
                        State&) const override;
@@ -96,6 +99,7 @@ class PeriodicLoad : public Load {
   Schedule schedule_;            // course of tau, smoothed
   Schedule stretched_, pulled_;  // courses of strain, smoothed, and of tension
   EndElements ends_;
+  std::vector<int> numbers_;  // numbers of the images in the scene, on several processes
   double period_ = 0, reach_ = 0;  // nm
 };
 
@@ -116,8 +120,9 @@ class PeriodicDrive : public Drive {
   Ends ends() const override { return Ends::endless; }
   std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
   NotForLammps not_for_lammps() const override {
-    return {"periodic",
-            "the images of a slice follow elements a period away, which other ranks have; a rope of ten periods "
+    if (load.tension.empty()) return {};
+    return {"periodic.tension_nN",
+            "the period then moves by the forces on all images, which several ranks have; a rope of ten periods "
             "between grips, whose middle is as a slice, takes ten times as long a step"};
   }
 };

@@ -96,10 +96,6 @@ class TwistDrive : public Drive {
   }
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::loaded; }
-  NotForLammps not_for_lammps() const override {
-    if (!load.geometric_only) return {};
-    return {"twist.geometric_only", "all elements of a tube get their spin at once, and several ranks have them"};
-  }
 
  private:
   void refuse_in_relaxation(const TomlTable& top, const Scene&) const;

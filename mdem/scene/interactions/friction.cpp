@@ -122,9 +122,11 @@ std::vector<FrictionLaw> laws_of_atoms(const Scene& scene, const DryFriction& ty
       if (!types.empty() && (i != std::min(types[0], types[1]) || j != std::max(types[0], types[1]))) continue;
       const ParameterSet& of_a = scene.sets[static_cast<std::size_t>(i)];
       const ParameterSet& of_b = scene.sets[static_cast<std::size_t>(j)];
-      for (const ParameterSet* set : {&of_a, &of_b})
+      for (const ParameterSet* set : {&of_a, &of_b}) {
         refuse_filament(*set, "no friction follows from it",
                         "give strength_pN_per_nm in [[friction]] in place of from");
+        refuse_other_than_carbon(*set, "friction from atoms is that of carbon alone: give strength_pN_per_nm");
+      }
       const Chirality a = of_a.chirality, b = of_b.chirality;
       const PairFriction f = friction_between(a, b, folders, place);
       const std::string estimate =

@@ -104,6 +104,16 @@ TEST(Grade, OfTheContactFollowsItsErrors) {
   EXPECT_EQ(grade_of(shipped("cnt-10-10-paper")).level, Grade::Level::limited);
 }
 
+TEST(Grade, LimitsOfOtherHoneycombsByTheRulesForCarbonAreNoGoodOnes) {
+  const std::string words = grade_of(shipped("bn-10-10-tersoff")).words();
+  EXPECT_NE(words.find("limited"), std::string::npos);
+  EXPECT_NE(words.find("follow the rules for carbon, and BN may give way earlier"), std::string::npos) << words;
+  EXPECT_EQ(words.find("is to be expected"), std::string::npos) << words;
+  ParameterSet soft = shipped("bn-10-10-tersoff");
+  soft.bond.stretch /= 23;
+  EXPECT_NE(grade_of(soft).words().find("a sheet of one layer has 30 to 500"), std::string::npos) << grade_of(soft).words();
+}
+
 TEST(Grade, EveryShippedSetSaysHowMuchRegistryCounts) {
   for (const auto& entry : std::filesystem::directory_iterator(data_directory() + "/parameters")) {
     if (entry.path().extension() != ".toml" || entry.path().stem() == "cnt-10-10-paper") continue;

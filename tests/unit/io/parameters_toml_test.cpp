@@ -210,6 +210,77 @@ std::string said_of_filament(const std::string& old, const std::string& by) {
   return "accepted";
 }
 
+// --- sets of other honeycombs than carbon
+
+const std::string tube_text = read_file(ROPEWALK_SOURCE_DIR "/data/parameters/cnt-10-10-tersoff.toml");
+const char* const lattice_table = R"([lattice]
+name = "BN"
+species = ["B", "N"]
+bond_length = { value = 0.1425, unit = "nm", standard_error = 0, origin = "chosen" }
+weight_1 = { value = 10.81, unit = "u", standard_error = 0, origin = "chosen" }
+weight_2 = { value = 14.007, unit = "u", standard_error = 0, origin = "chosen" }
+epsilon_11 = { value = 4e-3, unit = "eV", standard_error = 0, origin = "chosen" }
+sigma_11 = { value = 0.35, unit = "nm", standard_error = 0, origin = "chosen" }
+epsilon_12 = { value = 3e-3, unit = "eV", standard_error = 0, origin = "chosen" }
+sigma_12 = { value = 0.34, unit = "nm", standard_error = 0, origin = "chosen" }
+epsilon_22 = { value = 2e-3, unit = "eV", standard_error = 0, origin = "chosen" }
+sigma_22 = { value = 0.33, unit = "nm", standard_error = 0, origin = "chosen" }
+
+)";
+
+std::string lattice_text() {
+  std::string text = tube_text;
+  return text.insert(text.find("[tube]"), lattice_table);
+}
+
+std::string said_of_lattice(const std::string& old, const std::string& by) {
+  std::string text = lattice_text();
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  text.replace(at, old.size(), by);
+  try {
+    parameters_of_text(text, "set.toml");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(LatticeSet, HasItsSpeciesMassAndName) {
+  const ParameterSet carbon = parameters_of_text(tube_text, "set.toml"), set = parameters_of_text(lattice_text(), "set.toml");
+  EXPECT_EQ(tube_name(carbon), "(10,10)");
+  EXPECT_EQ(tube_name(set), "(10,10) BN");
+  EXPECT_NEAR(set.element_mass(1) / carbon.element_mass(1), 0.5 * (10.81 + 14.007) / 12.011, 1e-12);
+  EXPECT_EQ(set.honeycomb.pairs[1].sigma, 0.34);
+  EXPECT_NEAR(set.honeycomb.bond_length(), 0.1425, 1e-15);
+  EXPECT_FALSE(find_quantity(set, "bond.EA")->of_carbon) << "potentials of carbon say nothing of it";
+  EXPECT_NO_THROW(refuse_other_than_carbon(carbon, "so"));
+  EXPECT_THROW(refuse_other_than_carbon(set, "so"), InputError);
+}
+
+TEST(LatticeSet, IsReadAsItIsWritten) {
+  const ParameterSet set = parameters_of_text(lattice_text(), "set.toml");
+  const ParameterSet again = parameters_of_text(parameters_text(set, ""), "set.toml");
+  EXPECT_EQ(again.honeycomb.name, "BN");
+  EXPECT_EQ(again.honeycomb.species, set.honeycomb.species);
+  EXPECT_EQ(again.honeycomb.atomic_weight, set.honeycomb.atomic_weight);
+  EXPECT_EQ(again.honeycomb.lattice_constant, set.honeycomb.lattice_constant);
+  ASSERT_EQ(again.quantities.size(), set.quantities.size());
+  for (std::size_t k = 0; k < set.quantities.size(); ++k)
+    EXPECT_EQ(again.quantities[k].value, set.quantities[k].value) << set.quantities[k].key;
+}
+
+TEST(LatticeSet, BadLatticesAreRefused) {
+  EXPECT_THAT(said_of_lattice("[\"B\", \"N\"]", "[\"B\"]"), HasSubstr("species: are not two"));
+  EXPECT_THAT(said_of_lattice("[\"B\", \"N\"]", "[\"B\", \"n\"]"), HasSubstr("species: names \"n\", which is no element"));
+  EXPECT_THAT(said_of_lattice("species = [\"B\", \"N\"]\n", ""), HasSubstr("species: is missing"));
+  EXPECT_THAT(said_of_lattice("name = \"BN\"", "name = \"C\""), HasSubstr("carbon is built in"));
+  EXPECT_THAT(said_of_lattice("value = 0.1425", "value = 0.178"), HasSubstr("a (10,10) tube has about"));
+  EXPECT_THAT(said_of_lattice("sigma_12 =", "sigma_21 ="), HasSubstr("sigma_12: is missing"));
+  EXPECT_THAT(said_of_filament("[filament]", std::string(lattice_table) + "[filament]"),
+              HasSubstr("lattice: is that of a tube"));
+}
+
 TEST(FilamentSet, HasTheMassOfItsFileAndOneLimitOfTwist) {
   const ParameterSet set = parameters_of_text(filament_text, "set.toml");
   ASSERT_TRUE(set.filament);

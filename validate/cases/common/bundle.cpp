@@ -15,14 +15,17 @@ LineContact line_contact_of(const ParameterSet& set) {
   return {density, set.element_length, set.element_length, nodes, nodes};
 }
 
-PairIntegral surface_integral(const ParameterSet& set) {
+WallsIntegral surface_integral(const ParameterSet& set) {
   if (set.filament)
     throw NotApplicable("the oracle is the surface integral over the atoms of two tubes, and a filament has none");
   const UniversalLine& atoms = set.law<LineParameters>()->universal;
   const AtomLaw law{atoms.epsilon, atoms.sigma,
                     atoms.lj_cutoff > 0 ? atoms.lj_cutoff : std::numeric_limits<double>::infinity()};
-  const Shell shell{set.radius, set.law<LineParameters>()->surface_density};
-  return PairIntegral(law, shell, shell);
+  std::vector<Shell> shells;
+  for (const Wall& wall : set.walls)
+    shells.push_back({wall.radius, wall.atoms_per_length / (2 * units::pi * wall.radius)});
+  if (shells.empty()) shells.push_back({set.radius, set.law<LineParameters>()->surface_density});
+  return WallsIntegral(law, shells, shells);
 }
 
 Well pair_well(const ParameterSet& set) {
@@ -31,7 +34,7 @@ Well pair_well(const ParameterSet& set) {
   return {well.distance, well.energy};
 }
 
-double rope_energy(const PairIntegral& integral, int tubes, double spacing) {
+double rope_energy(const WallsIntegral& integral, int tubes, double spacing) {
   const auto places = hexagonal_lattice(tubes, spacing);
   double sum = 0;
   for (std::size_t i = 0; i < places.size(); ++i)

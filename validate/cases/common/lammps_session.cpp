@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "atoms/honeycomb_file.hpp"
 #include "io/files.hpp"
 #include "io/parameters_toml.hpp"
 #include "io/removal.hpp"
@@ -22,7 +23,7 @@ Potential potential_of(const ParameterSet& set) {
   const std::string name = provenance_value(set, "potential"), hash = provenance_value(set, "potential_hash");
   Potential potential;
   try {
-    potential = find_potential(name);
+    potential = ropewalk::potential_of(set, name);
   } catch (const InputError& e) {
     throw NotApplicable(
         fmt::format("the set was made with the interatomic potential \"{}\", which LAMMPS does not "

@@ -24,9 +24,31 @@ std::vector<Registry> registries(int count) {
   return list;
 }
 
-std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data) {
-  return header_commands(boundary, 0.05) + fmt::format("read_data {}\n", data) +
-         fmt::format("pair_style lj/cut {:.6f}\n", law.cutoff / angstrom) +
+namespace {
+
+std::string species_commands(const std::array<PairLaw, 3>& pairs) {
+  std::string text = fmt::format("pair_coeff * * 0.0 {:.6f}\n", pairs[1].sigma / angstrom);
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const PairLaw& law = pairs[static_cast<std::size_t>(i + j)];
+      text += fmt::format("pair_coeff {} {} {:.8f} {:.6f}\n", i + 1, j + 3, law.epsilon, law.sigma / angstrom);
+    }
+  return text +
+         "neigh_modify exclude type 1 1 exclude type 1 2 exclude type 2 2 "
+         "exclude type 3 3 exclude type 3 4 exclude type 4 4\n"
+         "group one type 1 2\ngroup two type 3 4\n";
+}
+
+}  // namespace
+
+std::string pair_commands(const MdSession& session, const std::string& boundary, const std::string& data) {
+  const AtomLaw& law = session.atom_law();
+  const std::string begin = header_commands(boundary, 0.05) + fmt::format("read_data {}\n", data) +
+                            fmt::format("pair_style lj/cut {:.6f}\n", law.cutoff / angstrom);
+  const Honeycomb& honeycomb = session.potential().honeycomb;
+  if (!honeycomb.one_species())
+    return begin + species_commands(honeycomb.pairs) + "thermo_modify norm no lost error\n";
+  return begin +
          fmt::format("pair_coeff * * 0.0 {0:.6f}\npair_coeff 1 2 {1:.8f} {0:.6f}\n", law.sigma / angstrom,
                      law.epsilon) +
          "neigh_modify exclude type 1 1 exclude type 2 2\n"
@@ -58,8 +80,8 @@ std::vector<std::vector<double>> slid_pairs(MdSession& session, const std::strin
       const std::string data = fmt::format("{}-{}-{}.data", name, i, j);
       session.write(data, data_file({tube_atoms(c, shape, p.hexagons, turn * i / p.turns),
                                      tube_atoms(c, shape, p.hexagons, turn * j / p.turns)},
-                                    4, 0, length));
-      input += pair_commands(session.atom_law(), "s s p", data) + move_two({p.distance, 0, 0});
+                                    4, 0, length, session.potential().honeycomb));
+      input += pair_commands(session, "s s p", data) + move_two({p.distance, 0, 0});
       for (int s = 0; s < p.shifts; ++s)
         input += print_values(name, "$(pe:%.15g)") + move_two({0, 0, p.range / p.shifts});
     }

@@ -21,9 +21,9 @@ std::vector<Registry> registries(int count);
 // The atoms of a tube turned and shifted by parts of its symmetry, with their middle at z = 0.
 std::vector<Vector3> centred_tube(Chirality c, const TubeShape& shape, long hexagons, double turn, double shift);
 
-// LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2). Lennard-Jones acts only between
-// these groups.
-std::string pair_commands(const AtomLaw& law, const std::string& boundary, const std::string& data);
+// LAMMPS commands that read the atoms as groups `one` and `two` (types 1 and 2; of two species 1, 2 and 3, 4).
+// Lennard-Jones acts only between these groups, by the session's law, or by its laws between species.
+std::string pair_commands(const MdSession& session, const std::string& boundary, const std::string& data);
 // Moves group `two` (nm).
 std::string move_two(const Vector3& by);
 // Appends the values, given as immediate variables, to name.dat.

@@ -168,6 +168,7 @@ std::vector<double> angles_of(const TwistedRope& rope, const ParameterSet& set, 
 }
 
 std::vector<RopeTube> rope_atoms(const TwistedRope& rope, const ParameterSet& set, const TubeShape& shape) {
+  if (!set.honeycomb.one_species()) throw NotApplicable("its ropes of atoms are built of one species");
   const Chirality c = set.chirality;
   const double row = row_height(c, shape);
   const long rows = rope.free_rows + 2 * rope.band_rows;

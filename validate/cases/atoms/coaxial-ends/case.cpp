@@ -42,8 +42,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
     const std::string data = fmt::format("ends-{}.data", k);
     session.write(data, data_file({centred_tube(c, shape, hexagons, 0, 0),
                                    centred_tube(c, shape, hexagons, (k + 0.5) / turn_count, 0)},
-                                  4, -2 * length, 3 * length));
-    input += pair_commands(session.atom_law(), "s s s", data);
+                                  4, -2 * length, 3 * length, session.potential().honeycomb));
+    input += pair_commands(session, "s s s", data);
     double last = 0;
     for (const double gap : gaps()) {
       input += move_two({0, 0, length + gap - last}) + print_values("ends", "$(pe:%.15g)");

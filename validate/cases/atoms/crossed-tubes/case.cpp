@@ -34,8 +34,8 @@ std::vector<Vector3> crossing_tube(const std::vector<Vector3>& atoms, double ang
 }
 
 // One registry at one angle: the distances at angle - step, angle and angle + step.
-std::string crossing_input(const AtomLaw& law, const std::string& data, double rest) {
-  std::string input = pair_commands(law, "s s s", data);
+std::string crossing_input(const MdSession& session, const std::string& data, double rest) {
+  std::string input = pair_commands(session, "s s s", data);
   // r x F about the line of both centres: of the x component only y and z count.
   input +=
       "variable lever atom y*fz-z*fy\ncompute torque two reduce sum v_lever\n"
@@ -67,8 +67,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
       const std::vector<Vector3> two = crossing_tube(centred_tube(c, shape, hexagons, r.turn_j, r.shift_j),
                                                      (angle - angle_step) * units::degree);
       session.write(data, data_file({centred_tube(c, shape, hexagons, r.turn_i, r.shift_i), two}, 0.5 * length + 2,
-                                    -0.5 * length - 1, 0.5 * length + 1));
-      input += crossing_input(session.atom_law(), data, rest);
+                                    -0.5 * length - 1, 0.5 * length + 1, session.potential().honeycomb));
+      input += crossing_input(session, data, rest);
     }
   const std::size_t count = std::size(offsets), all = std::size(angles);
   const auto results = session.run("crossed", input, all * registry_count * sides * count, 2);

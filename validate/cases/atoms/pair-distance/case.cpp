@@ -45,8 +45,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& i,
     const std::string data = fmt::format("distance-{}.data", number++);
     session.write(data, data_file({centred_tube(ci, one, hexagons, r.turn_i, r.shift_i),
                                    centred_tube(cj, two, hexagons_in(cj, two, reach), r.turn_j, r.shift_j)},
-                                  4, -reach, reach));
-    input += pair_commands(session.atom_law(), "s s s", data);
+                                  4, -reach, reach, session.potential().honeycomb));
+    input += pair_commands(session, "s s s", data);
     double last = 0;
     for (const double gap : list) {
       const double distance = one.radius + two.radius + gap;

@@ -71,8 +71,8 @@ ReferenceTable make_pull_out(const CaseContext& context, const ParameterSet& set
     const std::string data = fmt::format("pull-out-{}.data", number++);
     session.write(data, data_file({tube_atoms(c, shape, hexagons, turn * r.turn_i),
                                    tube_atoms(c, shape, hexagons, turn * r.turn_j)},
-                                  4, -1, length + 1));
-    input += pair_commands(session.atom_law(), "s s s", data) + move_two({distance, 0, 0});
+                                  4, -1, length + 1, session.potential().honeycomb));
+    input += pair_commands(session, "s s s", data) + move_two({distance, 0, 0});
     double last = length;
     for (const double overlap : list) {
       // Whole steps of overlap meet only a few shifts of the lattice, so that each registry adds a shift of its

@@ -60,7 +60,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   for (const long hexagons : {short_part, short_part + extra}) {
     const FiniteTube finite(c, shape, hexagons, band);
     const std::string name = hexagons == short_part ? "bend-short" : "bend-long";
-    session.write(name + ".data", finite.data());
+    session.write(name + ".data", finite.data(session.potential().honeycomb));
     results.push_back(
         session.run(name, bend_input(finite, session.potential(), name, curvatures), curvatures.size() + 1, 1));
     lengths.push_back(finite.free_length());

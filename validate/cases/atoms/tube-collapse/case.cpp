@@ -75,7 +75,7 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
     const FiniteTube finite(set.chirality, shape, hexagons_in(set.chirality, shape, length),
                             held_band(session.potential()));
     const std::string name = fmt::format("collapse-{:.0f}nm", length);
-    session.write(name + ".data", finite.data());
+    session.write(name + ".data", finite.data(session.potential().honeycomb));
     const std::vector<double> twists = steps_of(shape.radius);
     const auto results =
         session.run(name, input_of(finite, session.potential(), name, twists), twists.size() + 1, 2, 4);

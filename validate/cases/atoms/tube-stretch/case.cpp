@@ -37,7 +37,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const TubeShape shape = session.relaxed().shape;
   const long hexagons = period_hexagons(c) * std::max(1L, std::lround(cell_length / period_of(c, shape)));
   const double length = static_cast<double>(hexagons) * shape.length_per_hexagon;
-  session.write("stretch.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 1, 0, length));
+  session.write("stretch.data", data_file({tube_atoms(c, shape, hexagons)}, shape.radius + 1, 0, length,
+                                          session.potential().honeycomb));
   const std::size_t steps = std::size(magnitudes) + 1;
   const auto results = session.run("stretch", strain_input(session.potential(), "stretch", length), 2 * steps, 1);
   ReferenceTable t = session.table(

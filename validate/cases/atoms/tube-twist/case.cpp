@@ -40,7 +40,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
   const Chirality c = set.chirality;
   const RelaxedTube& relaxed = session.relaxed();
   const std::vector<LatticeVector> periods =
-      twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius);
+      twisted_periods(c, shortest_cell, longest_cell, 1.05 * last_shear / relaxed.shape.radius,
+                      set.honeycomb.lattice_constant);
   std::string input = "# uniformly twisted periodic cells\n";
   std::vector<TwistedCell> cells;
   for (const double wanted : shears(c)) {
@@ -50,7 +51,8 @@ ReferenceTable make_reference(const CaseContext& context, const ParameterSet& se
     TubeShape shape = relaxed.shape;
     shape.twist = cell.twist;
     const std::string data = fmt::format("twist-{}.data", cells.size());
-    session.write(data, data_file({tube_atoms(c, shape, cell.hexagons)}, shape.radius + 1, 0, cell.length));
+    session.write(data, data_file({tube_atoms(c, shape, cell.hexagons)}, shape.radius + 1, 0, cell.length,
+                                    session.potential().honeycomb));
     input += twist_input(session.potential(), data, "twist");
     cells.push_back(cell);
   }

@@ -21,7 +21,7 @@ double contacts(double tubes) { return 3 * tubes - std::sqrt(12 * tubes - 3); }
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
-  const PairIntegral integral = surface_integral(oracle);
+  const WallsIntegral integral = surface_integral(oracle);
   const Well pair = integral.parallel_well();
   CaseResult result;
   std::vector<double> tubes, energies;
