@@ -94,7 +94,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
 struct EnvelopeSpecimen {
   std::string commands;    // read the data, define the groups `held` and `free`, fix `ref` and variable `half`
   double free_length = 0;  // nm
-  double radius = 0;       // nm, of the outer wall
+  double radius = 0;       // outer wall, nm
   double twist = 0;        // rad/nm, natural
   std::size_t atoms = 0;
 };

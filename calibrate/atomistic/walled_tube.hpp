@@ -31,7 +31,7 @@ class WalledTube {
   WalledTube(const std::vector<WallShape>& walls, const std::vector<long>& free_hexagons, double band);
 
   std::size_t atoms() const { return atoms_; }
-  double free_length() const { return parts_.back().free_length; }  // nm, of the outer wall
+  double free_length() const { return parts_.back().free_length; }  // outer wall, nm
   double free_length(std::size_t wall) const { return parts_[wall].free_length; }
   const std::vector<Site>& sites(std::size_t wall) const { return parts_[wall].sites; }
   std::string data() const;

@@ -21,9 +21,9 @@ struct State {
   double strain = 0, twist = 0, curvature = 0;  // 1, rad/nm, 1/nm
 };
 struct Result {
-  std::vector<double> energy;  // eV, of each wall
+  std::vector<double> energy;  // energy of each wall, eV
   double force = 0;            // eV/nm
-  double radius = 0;           // nm, of the outer wall in the middle
+  double radius = 0;           // outer wall in the middle, nm
 };
 
 class Walls {

@@ -50,7 +50,7 @@ class WallsIntegral {
 
  private:
   AtomLaw law_;
-  double contact_;  // of the outer walls
+  double contact_;  // the outer walls
   std::vector<PairIntegral> pairs_;
 };
 

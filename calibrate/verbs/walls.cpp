@@ -79,7 +79,7 @@ std::vector<Chirality> find_walls(int count, double outer_diameter) {
     throw InputError({"", 0, "--walls"}, what, "give 2 to 30 walls and an outer diameter that has room for them");
   };
   if (count < 2 || count > 30) refuse(fmt::format("is {}", count));
-  constexpr double slack = 0.1;    // nm, of the outer diameter
+  constexpr double slack = 0.1;    // slack in the outer diameter, nm
   constexpr double outweighs = 0.05;  // what a spacing counts more than the diameter
   std::vector<Chirality> best;
   double least = 1e9;

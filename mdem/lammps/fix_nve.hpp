@@ -77,7 +77,7 @@ class FixNve : public FixMotion {
   double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
   void check();
 
-  double time_ = 0;  // ps, in the course of a step
+  double time_ = 0;  // time in the course of a step, ps
   int part_ = 0;     // number of the part of the step, from 0
   bool began_well_ = true;
   int failure_ = 0;  // Failure of this rank, or the largest of all where they have looked

@@ -31,7 +31,7 @@ class FixRelax : public FixMotion {
   Fire fire_;
   double radius_ = 0, scale2_ = 0;
   long steps_ = 0;
-  double last_ = 0;  // ps, of the last step
+  double last_ = 0;  // length of the last step, ps
 };
 
 }  // namespace ropewalk::lammps

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "cases/common/twisted_rope.hpp"
 #include "chart/chart.hpp"
@@ -188,7 +189,10 @@ Specimen ChartScene::build(const ChartModel& model) const {
   s.scene = scene;
   apply(model, s.scene);
   divide(*this, model, s.scene);
+  // The twist at which bonds collapse follows from the whole tubes here, not from the part between the grips.
+  auto drives = std::exchange(s.scene.drives, {});
   BuiltScene built = ropewalk::build(s.scene);
+  s.scene.drives = std::move(drives);
   // Constants of damping are those of elements of the default length.
   s.scene.damping = same_dissipation(s.scene.damping, element, s.scene.element_length);
   s.spacing = contact ? built.spacing : 0;
