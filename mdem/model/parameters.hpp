@@ -105,8 +105,8 @@ struct ParameterSet {
   std::string reference;
   std::string doi;
   bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
-  Chirality chirality;            // of the outer wall; (0,0), which is no tube, for a filament
-  std::vector<Wall> walls;        // of a tube of several walls, inside first; empty for one wall and for a filament
+  Chirality chirality;            // (n,m) of the outer wall; (0,0), which is no tube, for a filament
+  std::vector<Wall> walls;        // walls of a tube that has several, inside first; empty for one wall and for a filament
   bool outer_carries = false;     // several walls: the outer one alone carries stretch and torsion
   double radius = 0;              // nm: of the wall of a tube, its contact radius too; contact_radius of a filament
   double atoms_per_length = 0;    // 1/nm; 0 for a filament
