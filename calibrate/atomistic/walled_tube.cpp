@@ -30,7 +30,8 @@ std::string walled_pair_commands(const Potential& potential, const LennardJones&
   };
   if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
   const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
-  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0) refuse(potential.commands[0]);
+  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0)
+    refuse(potential.commands[0]);
   if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
     refuse(potential.commands[1]);
   std::string own = style[1];
@@ -38,7 +39,8 @@ std::string walled_pair_commands(const Potential& potential, const LennardJones&
   std::string styles = "pair_style hybrid/overlay", coefficients;
   for (std::size_t k = 1; k <= walls; ++k) {
     styles += " " + own;
-    coefficients += fmt::format("pair_coeff * * {}{} {}", style[1], walls > 1 ? fmt::format(" {}", k) : "", coeff[3]);
+    coefficients +=
+        fmt::format("pair_coeff * * {}{} {}", style[1], walls > 1 ? fmt::format(" {}", k) : "", coeff[3]);
     for (std::size_t l = 1; l <= walls; ++l) coefficients += l == k ? " " + coeff[4] : " NULL";
     coefficients += "\n";
   }
@@ -103,7 +105,8 @@ std::string WalledTube::commands(const Potential& potential, const LennardJones&
       above += fmt::format(" {}:{}", first + part.below + part.free + 1, first + part.atoms.size());
     }
     half += fmt::format("{}{:.12g}*(type=={})", k == 0 ? " " : "+", 0.5 * part.free_length / angstrom, k + 1);
-    totals += fmt::format("group wall{} type {}\ncompute w{} wall{} reduce sum c_each\n", k + 1, k + 1, k + 1, k + 1);
+    totals +=
+        fmt::format("group wall{} type {}\ncompute w{} wall{} reduce sum c_each\n", k + 1, k + 1, k + 1, k + 1);
     columns += fmt::format(" c_w{}", k + 1);
     first += part.atoms.size();
   }

@@ -26,8 +26,8 @@ std::string walled_pair_commands(const Potential& potential, const LennardJones&
 
 class WalledTube {
  public:
-  // `free_hexagons` of each wall, inside first, between bands of the length `band` (nm). The walls are centred on one
-  // another.
+  // `free_hexagons` of each wall, inside first, between bands of the length `band` (nm). The walls are centred on
+  // one another.
   WalledTube(const std::vector<WallShape>& walls, const std::vector<long>& free_hexagons, double band);
 
   std::size_t atoms() const { return atoms_; }
@@ -37,18 +37,19 @@ class WalledTube {
   std::string data() const;
 
   // Reads the data. Type k is wall k. Group `held` has the bands of all walls or of the outer one, `free` the rest,
-  // `wall1`, `wall2`, ... the walls; fix `ref` keeps the straight positions. Atom-style variables: `half`, half of the
-  // free length of an atom's wall; `led`, 1 for atoms of walls that are held. `turn`: rad, about the axis, first.
-  std::string commands(const Potential& potential, const LennardJones& law, const std::string& data, Holding holding,
-                       double turn = 0) const;
-  // The energies of all walls (eV), the norm of the forces (eV/Angstrom) and the mean radius of the outer wall in the
-  // middle (Angstrom), as one line of results.
+  // `wall1`, `wall2`, ... the walls; fix `ref` keeps the straight positions. Atom-style variables: `half`, half of
+  // the free length of an atom's wall; `led`, 1 for atoms of walls that are held. `turn`: rad, about the axis,
+  // first.
+  std::string commands(const Potential& potential, const LennardJones& law, const std::string& data,
+                       Holding holding, double turn = 0) const;
+  // The energies of all walls (eV), the norm of the forces (eV/Angstrom) and the mean radius of the outer wall in
+  // the middle (Angstrom), as one line of results.
   std::string report(const std::string& name) const;
 
  private:
   struct Part {
-    std::vector<Site> sites;       // sorted: lower band, free part, upper band
-    std::vector<Vector3> atoms;    // nm
+    std::vector<Site> sites;     // sorted: lower band, free part, upper band
+    std::vector<Vector3> atoms;  // nm
     std::size_t below = 0, free = 0;
     double free_length = 0;
   };

@@ -71,8 +71,8 @@ class Walls {
       std::string input = "# a specimen in one state after the other\n";
       for (int plane = 0; plane < (bent ? planes() : 1); ++plane)
         input += tube.commands(run_.potential, law_, stage + ".data", holding, 0.5 * pi * plane) +
-                 relaxing(holding) + (bent ? bend_commands(states, tube.report(stage))
-                                   : strain_commands(states, tube.report(stage)));
+                 relaxing(holding) +
+                 (bent ? bend_commands(states, tube.report(stage)) : strain_commands(states, tube.report(stage)));
       run_stage(run_, stage, input);
       out[longer ? 1 : 0] = results(stage, states.size(), bent ? planes() : 1);
     }
@@ -86,8 +86,8 @@ class Walls {
     const WalledTube tube(shapes_, free, held_band(run_.potential));
     write_data(run_, "envelope.data", tube.data());
     return measured_envelope(run_,
-                             {tube.commands(run_.potential, law_, "envelope.data", Holding::all), tube.free_length(),
-                              shapes_.back().shape.radius, 0, tube.atoms()},
+                             {tube.commands(run_.potential, law_, "envelope.data", Holding::all),
+                              tube.free_length(), shapes_.back().shape.radius, 0, tube.atoms()},
                              stiffness, rows);
   }
 
@@ -95,9 +95,7 @@ class Walls {
   const WallShape& shape(std::size_t k) const { return shapes_[k]; }
   bool chiral() const { return chiral_; }
   // The difference of both specimens of a wall, and the nominal one (nm).
-  double difference(std::size_t wall) const {
-    return specimen_length(wall, true) - specimen_length(wall, false);
-  }
+  double difference(std::size_t wall) const { return specimen_length(wall, true) - specimen_length(wall, false); }
   double nominal() const { return difference(size() - 1); }
   int atoms() const { return static_cast<int>(specimen(true).atoms()); }
   RunContext& run() { return run_; }
@@ -210,9 +208,10 @@ class Walls {
     const double length = (n * hz - h1 * z1) / spread, turn = (n * hp - h1 * p1) / spread;
     if (!(n > 3) || std::fabs(length / shape.length_per_hexagon - 1) > 0.05 ||
         std::fabs(radius / n / shape.radius - 1) > 0.1)
-      throw LammpsError(fmt::format("the walls of the tube do not hold together: wall {} has {:.3g} times its length "
-                                    "and {:.3g} times its radius ({}/together.log)",
-                                    k + 1, length / shape.length_per_hexagon, radius / n / shape.radius, run_.folder));
+      throw LammpsError(
+          fmt::format("the walls of the tube do not hold together: wall {} has {:.3g} times its length "
+                      "and {:.3g} times its radius ({}/together.log)",
+                      k + 1, length / shape.length_per_hexagon, radius / n / shape.radius, run_.folder));
     shape.twist = c.chiral() ? (shape.twist * shape.length_per_hexagon + turn) / length : 0;
     shape.length_per_hexagon = length;
     shape.radius = radius / n;
@@ -228,8 +227,8 @@ class Walls {
 // States of strain and twist, each near the one before. The energy of tubes without a sense of twist is even in it.
 std::vector<State> straight_states(const StiffnessOptions& options, double radius, bool chiral) {
   const double e = options.largest_strain, t = options.largest_shear / radius;
-  std::vector<State> out = {{0, 0, 0}, {-0.5 * e, 0, 0}, {-e, 0, 0},  {0.5 * e, 0, 0}, {e, 0, 0},
-                            {e, t, 0}, {-e, t, 0},       {0, t, 0}, {0, 0.5 * t, 0}};
+  std::vector<State> out = {{0, 0, 0}, {-0.5 * e, 0, 0}, {-e, 0, 0}, {0.5 * e, 0, 0}, {e, 0, 0},
+                            {e, t, 0}, {-e, t, 0},       {0, t, 0},  {0, 0.5 * t, 0}};
   if (chiral) out.insert(out.end(), {{0, -0.5 * t, 0}, {0, -t, 0}, {-e, -t, 0}, {e, -t, 0}});
   return out;
 }
@@ -409,12 +408,14 @@ WalledStiffness measure_walls(const std::vector<Chirality>& chiralities, const P
            std::string(holding == Holding::all ? "all walls held" : "the outer wall held"));
       const std::vector<State> wide = wide_states(s.envelope, radius, walls.chiral()),
                                far = bent_states(s.envelope.kink_curvature.value, {0, 0.3, 0.5, 0.65, 0.75, 0.85});
-      append(s.rows, straight_rows(walls, wide, walls.strained(name, wide, holding), -1, false, "wide-stretch-twist"), "");
+      append(s.rows,
+             straight_rows(walls, wide, walls.strained(name, wide, holding), -1, false, "wide-stretch-twist"), "");
       append(s.rows, bent_rows(walls, far, walls.strained(name + "-bend", far, holding), -1, "wide-bend"), "");
       fit_anharmonic(s.rows, chiral_wall(chiralities), s);
     };
     // The bond of one way of carrying is enough.
-    carried == Holding::all ? beyond(out.all, Holding::all, "wide-all") : beyond(out.outer, Holding::outer, "wide-outer");
+    carried == Holding::all ? beyond(out.all, Holding::all, "wide-all")
+                            : beyond(out.outer, Holding::outer, "wide-outer");
   }
   for (Stiffness* s : {&out.all, &out.outer}) {
     s->lammps_seconds = walls.run().lammps_seconds;

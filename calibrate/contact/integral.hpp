@@ -50,7 +50,7 @@ class WallsIntegral {
 
  private:
   AtomLaw law_;
-  double contact_;  // the outer walls
+  double contact_;  // sum of the outer radii, nm
   std::vector<PairIntegral> pairs_;
 };
 

@@ -14,8 +14,8 @@
 namespace ropewalk::calibrate {
 
 struct CalibrationRequest {
-  Chirality chirality;           // the outer wall
-  std::vector<Chirality> walls;  // the walls of a tube with several, inside first; empty for a tube of one wall
+  Chirality chirality;           // (n,m) of the outer wall
+  std::vector<Chirality> walls;  // walls of a tube that has several, inside first; empty for a tube of one wall
   bool outer_carries = false;    // several walls: the outer one alone carries stretch and torsion
   Potential potential;
   AtomLaw law;
@@ -33,7 +33,7 @@ struct CalibrationRequest {
 struct Calibration {
   CalibrationRequest request;
   LammpsVersion lammps;
-  Stiffness stiffness;  // stiffness of all walls that carry
+  Stiffness stiffness;  // stiffnesses; of several walls as they carry
   std::optional<WalledStiffness> walled;
   LineFit line;
   double cutoff_loss = 0;  // several walls: the part of the well that the cutoff of the atom-atom law leaves out
@@ -46,7 +46,7 @@ struct Calibration {
   std::vector<std::string> warnings;
   double seconds = 0, paper_seconds = 0;
 
-  Shell shell() const { return shells().back(); }  // the outer wall
+  Shell shell() const { return shells().back(); }  // shell of the outer wall
   std::vector<Shell> shells() const;               // inside first
 };
 

@@ -42,8 +42,7 @@ std::string walls_text(const std::vector<Chirality>& walls) {
 }
 
 std::string walls_summary(const std::vector<Chirality>& walls) {
-  std::string text =
-      fmt::format("{}: {:.3f} nm wide, walls", walls_text(walls), 2 * tube_radius(walls.back()));
+  std::string text = fmt::format("{}: {:.3f} nm wide, walls", walls_text(walls), 2 * tube_radius(walls.back()));
   for (std::size_t k = 1; k < walls.size(); ++k)
     text += fmt::format("{} {:.3f}", k > 1 ? "," : "", spacing(walls[k - 1], walls[k]));
   return text + " nm apart";
@@ -65,11 +64,12 @@ std::vector<Chirality> parse_walls(const std::string& text) {
     const Chirality a = walls[k - 1], b = walls[k], fits = fitting_outside(a);
     const double gap = spacing(a, b);
     if (gap >= least_wall_spacing && gap <= most_wall_spacing) continue;
-    throw InputError({"", 0, "--chirality"},
-                     fmt::format("({},{}) and ({},{}) are walls {:.3f} nm apart, and walls fit at {:.2f} to {:.2f} nm",
-                                 a.n, a.m, b.n, b.m, gap, least_wall_spacing, most_wall_spacing),
-                     fmt::format("name them from inside to outside; around ({},{}) fits ({},{}), {:.3f} nm apart", a.n,
-                                 a.m, fits.n, fits.m, spacing(a, fits)));
+    throw InputError(
+        {"", 0, "--chirality"},
+        fmt::format("({},{}) and ({},{}) are walls {:.3f} nm apart, and walls fit at {:.2f} to {:.2f} nm", a.n, a.m,
+                    b.n, b.m, gap, least_wall_spacing, most_wall_spacing),
+        fmt::format("name them from inside to outside; around ({},{}) fits ({},{}), {:.3f} nm apart", a.n, a.m,
+                    fits.n, fits.m, spacing(a, fits)));
   }
   return walls;
 }
@@ -79,7 +79,7 @@ std::vector<Chirality> find_walls(int count, double outer_diameter) {
     throw InputError({"", 0, "--walls"}, what, "give 2 to 30 walls and an outer diameter that has room for them");
   };
   if (count < 2 || count > 30) refuse(fmt::format("is {}", count));
-  constexpr double slack = 0.1;    // slack in the outer diameter, nm
+  constexpr double slack = 0.1;       // slack in the outer diameter, nm
   constexpr double outweighs = 0.05;  // what a spacing counts more than the diameter
   std::vector<Chirality> best;
   double least = 1e9;
@@ -103,7 +103,8 @@ std::vector<Chirality> find_walls(int count, double outer_diameter) {
     least = cost;
     best.assign(walls.rbegin(), walls.rend());
   }
-  if (best.empty()) refuse(fmt::format("is {}, and a tube {:.3g} nm wide has no room for so many", count, outer_diameter));
+  if (best.empty())
+    refuse(fmt::format("is {}, and a tube {:.3g} nm wide has no room for so many", count, outer_diameter));
   return best;
 }
 

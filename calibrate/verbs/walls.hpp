@@ -8,12 +8,12 @@
 
 namespace ropewalk::calibrate {
 
-// "(5,5)@(10,10)" or "5,5@10,10", inside first; "10,10" is one wall. Throws InputError for what is no chirality, and for
-// neighbours that are nearer than least_wall_spacing or farther apart than most_wall_spacing (walls.hpp).
+// "(5,5)@(10,10)" or "5,5@10,10", inside first; "10,10" is one wall. Throws InputError for what is no chirality,
+// and for neighbours that are nearer than least_wall_spacing or farther apart than most_wall_spacing (walls.hpp).
 std::vector<Chirality> parse_walls(const std::string& text);
 
-// Armchair and zigzag walls whose distances are nearest to that of graphite, and whose outer diameter (nm) is near the
-// one that is wanted.
+// Armchair and zigzag walls whose distances are nearest to that of graphite, and whose outer diameter (nm) is near
+// the one that is wanted.
 std::vector<Chirality> find_walls(int walls, double outer_diameter);
 
 // "(5,5)@(10,10)"

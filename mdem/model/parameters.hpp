@@ -106,8 +106,8 @@ struct ParameterSet {
   std::string doi;
   bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
   Honeycomb honeycomb;            // sheet that its walls are rolled from
-  Chirality chirality;            // the outer wall; (0,0), which is no tube, for a filament
-  std::vector<Wall> walls;        // the walls of a tube with several, inside first; empty for one wall and for a filament
+  Chirality chirality;            // (n,m) of the outer wall; (0,0), which is no tube, for a filament
+  std::vector<Wall> walls;        // walls of a tube that has several, inside first; else empty
   bool outer_carries = false;     // several walls: the outer one alone carries stretch and torsion
   double radius = 0;              // nm: of the wall of a tube, its contact radius too; contact_radius of a filament
   double atoms_per_length = 0;    // 1/nm; 0 for a filament

@@ -137,7 +137,7 @@ bool like(const ParameterSet& i, const ParameterSet& j) {
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped) {
   if (given.filament && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
-  if (!given.walls.empty() && !c.several_walls && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
+  if (!given.walls.empty() && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("the atoms of this case are those of a tube of one wall");
   if (c.law == Case::Law::line && !given.law<LineParameters>())
     throw NotApplicable("the set has no contact law `line`");
