@@ -5,8 +5,6 @@
 
 #include "cli/command_line.hpp"
 #include "io/data_files.hpp"
-#include "io/error_exit.hpp"
-#include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "model/error.hpp"
 #include "verbs/verbs.hpp"
@@ -36,9 +34,15 @@ std::string command_line(int argc, char** argv) {
   std::string text = "ropewalk calibrate";
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    text += word.find_first_of(" \t\n\"'$`\\") == std::string::npos ? " " + word : " '" + word + "'";
+    text += word.find_first_of(" \t\n\"'$`\\()") == std::string::npos ? " " + word : " '" + word + "'";
   }
   return text;
+}
+
+int failed(const char* name, const std::exception& error) {
+  if (interrupted_by() == 0 || error_code(error) != 3) return report_error(name, error);
+  std::fprintf(stderr, "\n%s: interrupted; nothing was written\n", name);
+  return 128 + interrupted_by();
 }
 
 }  // namespace
@@ -71,19 +75,5 @@ int main(int argc, char** argv) {
                        {{"show", sets}, {"friction", sets}, {"pull", sets}}};
   });
   catch_interrupts();
-  try {
-    refuse_control_characters(argv);
-    app.parse(argc, argv);
-    return code_at_exit("ropewalk calibrate", program.code);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return code_at_exit("ropewalk calibrate", app.exit(e));
-    std::fprintf(stderr, "ropewalk calibrate: %s\n", usage_error(app, e, "ropewalk calibrate").c_str());
-    return 2;
-  } catch (const std::exception& e) {
-    if (interrupted_by() != 0 && error_code(e) == 3) {
-      std::fprintf(stderr, "\nropewalk calibrate: interrupted; nothing was written\n");
-      return 128 + interrupted_by();
-    }
-    return report_error("ropewalk calibrate", e);
-  }
+  return run_program(app, argc, program, "ropewalk calibrate", "ropewalk calibrate", {}, failed);
 }

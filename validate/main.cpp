@@ -1,12 +1,9 @@
 // ropewalk-validate, also called as `ropewalk validate`: compares the model with references it was not fitted to.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <cstring>
 
 #include "cli/command_line.hpp"
 #include "io/data_files.hpp"
-#include "io/error_exit.hpp"
-#include "io/plain_text.hpp"
 #include "io/program.hpp"
 #include "version.hpp"
 
@@ -48,15 +45,5 @@ int main(int argc, char** argv) {
     return Description{
         "ropewalk-validate", version, "", nlohmann::ordered_json::object(), {{"--parameters", shipped_sets()}}};
   });
-  try {
-    refuse_control_characters(argv);
-    app.parse(argc, argv);
-    return code_at_exit(spoken, program.code);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return code_at_exit(spoken, app.exit(e));
-    std::fprintf(stderr, "%s: %s\n", spoken, usage_error(app, e, name).c_str());
-    return 2;
-  } catch (const std::exception& e) {
-    return report_error(spoken, e);
-  }
+  return run_program(app, argc, program, spoken, name);
 }

@@ -27,7 +27,6 @@ constexpr double rule_error = 0.2;  // relative, between tubes and potentials
 
 constexpr double seed_error = 0.03;  // relative: scatter of an instability with other noise or steps
 
-constexpr double specimen_length = 12;                // nm
 constexpr double first_step = 0.4, step_size = 0.04;  // arguments of the rule
 constexpr double give_way =
     0.9;  // of the largest work of a step so far: below it moment, torque or force are falling
@@ -129,11 +128,20 @@ void limits_from_terms(const Stiffness& s, Envelope& envelope) {
 
 Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,
                            std::vector<AtomisticRow>& rows) {
-  const double radius = tube.shape.radius;
-  Envelope envelope = stiffness.envelope;
-  const FiniteTube finite(run.c, tube.shape, hexagons_in(run.c, tube.shape, specimen_length),
+  const FiniteTube finite(run.c, tube.shape, hexagons_in(run.c, tube.shape, envelope_length),
                           held_band(run.potential));
   write_data(run, "envelope.data", finite.data(run.potential.honeycomb));
+  return measured_envelope(run,
+                           {finite.commands(run.potential, "envelope.data") +
+                                fmt::format("variable half equal {:.12g}\n", 0.5 * finite.free_length() / angstrom),
+                            finite.free_length(), tube.shape.radius, tube.shape.twist, finite.atoms().size()},
+                           stiffness, rows);
+}
+
+Envelope measured_envelope(RunContext& run, const EnvelopeSpecimen& specimen, const Stiffness& stiffness,
+                           std::vector<AtomisticRow>& rows) {
+  const double radius = specimen.radius;
+  Envelope envelope = stiffness.envelope;
   Measured* const results[] = {&envelope.kink_curvature, &envelope.twist_collapse, &envelope.compression};
   const std::vector<Loading> list = loadings(scaled_envelope(radius), radius);
 
@@ -144,8 +152,7 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
     const int steps = static_cast<int>(std::lround((loading.last_step - first_step) / step_size));
     const std::string report = fmt::format("print \"$(v_q:%.12g) $(pe:%.15g)\" append {}.dat screen no\n", name);
     std::string input = "# step by step from the relaxed state before, with a little noise, until it gives way\n" +
-                        finite.commands(run.potential, "envelope.data") +
-                        fmt::format("variable half equal {:.12g}\n", 0.5 * finite.free_length() / angstrom) +
+                        specimen.commands +
                         "variable q equal 0.0\nvariable q0 equal 0.0\n" + loading.variables +
                         "minimize 0.0 1e-3 1000 20000\n" + report +
                         "variable e equal $(pe:%.15g)\nvariable most equal 0.0\n";
@@ -177,11 +184,11 @@ Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiff
     for (const auto& line : table) {
       AtomisticRow row;
       row.kind = name;
-      row.length = finite.free_length();
-      row.atoms = static_cast<int>(finite.atoms().size());
+      row.length = specimen.free_length;
+      row.atoms = static_cast<int>(specimen.atoms);
       if (loading.name == "kink") row.curvature = line[0] * unit;
       if (loading.name == "compression") row.strain = -line[0];
-      row.twist = tube.shape.twist + (loading.name == "collapse" ? line[0] * unit : 0);
+      row.twist = specimen.twist + (loading.name == "collapse" ? line[0] * unit : 0);
       row.energy = line[1] - table.front()[1];
       rows.push_back(row);
     }

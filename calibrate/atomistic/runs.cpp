@@ -116,6 +116,26 @@ std::vector<std::vector<double>> read_results(const std::string& folder, const s
   return table;
 }
 
+std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
+  const std::string path = run.folder + "/" + name;
+  if (!std::filesystem::exists(path)) refuse_full_disk(run.folder);
+  std::istringstream lines(read_file(path));
+  std::vector<Vector3> atoms;
+  std::string line;
+  while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    long id = 0;
+    double x = 0, y = 0, z = 0;
+    if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
+  }
+  if (atoms.size() == count) return atoms;
+  refuse_full_disk(run.folder);
+  throw LammpsError(
+      fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
+}
+
 void check_convergence(RunContext& run, const std::string& what, double force, double energy) {
   // A residual force f leaves an energy f^2/2K in a mode of stiffness K. Only the bending of a long tube is softer
   // than 100 eV/nm^2.

@@ -90,6 +90,17 @@ std::vector<AtomisticRow> bend_rows(RunContext& run, const RelaxedTube& tube, co
 // Incremental runs, which take minutes. Appends their rows.
 Envelope measured_envelope(RunContext& run, const RelaxedTube& tube, const Stiffness& stiffness,
                            std::vector<AtomisticRow>& rows);
+// The specimen of such runs: its straight tube with held ends.
+struct EnvelopeSpecimen {
+  std::string commands;    // read the data, define the groups `held` and `free`, fix `ref` and variable `half`
+  double free_length = 0;  // nm
+  double radius = 0;       // nm, of the outer wall
+  double twist = 0;        // rad/nm, natural
+  std::size_t atoms = 0;
+};
+inline constexpr double envelope_length = 12;  // nm
+Envelope measured_envelope(RunContext& run, const EnvelopeSpecimen& specimen, const Stiffness& stiffness,
+                           std::vector<AtomisticRow>& rows);
 
 // Shared pieces of the inputs.
 // The start of an input that minimises one uniform cell; v_wide scales v_new_x and v_new_y.
@@ -111,6 +122,8 @@ void write_data(const RunContext& run, const std::string& name, const std::strin
 // lines or more than `most`.
 std::vector<std::vector<double>> read_results(const std::string& folder, const std::string& name, std::size_t least,
                                               std::size_t most, std::size_t columns);
+// Atoms (nm) that a run dumped to the file `name`, in the order of their ids.
+std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count);
 // Adds a warning if the residual forces of the minimiser (eV/nm) may stand for more than 1e-3 of the energy (eV).
 void check_convergence(RunContext& run, const std::string& what, double force, double energy);
 void run_stage(RunContext& run, const std::string& name, const std::string& input);

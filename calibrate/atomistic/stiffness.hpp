@@ -50,8 +50,8 @@ struct AtomisticRow {
   double twist = 0;      // rad/nm, against the rolled sheet
   double curvature = 0;  // 1/nm
   int atoms = 0;
-  double energy = 0;    // eV, of the whole cell, against the relaxed straight tube
-  double residual = 0;  // eV, of the fit
+  double energy = 0;    // energy of the whole cell above the relaxed straight tube, eV
+  double residual = 0;  // residual of the fit, eV
   double radius = 0;    // nm, mean distance from the axis (straight cells)
   int line = 0;         // line in the file that it was read from
 };
@@ -100,8 +100,8 @@ struct AnharmonicFit {
 // The force of a tube that is pulled, at equal steps of strain from the edge of the window to the end.
 struct PullFit {
   double start = 0, end = 0;                     // strains: max_strain of the window, and the last one; 0: not measured
-  double edge_force = 0;                         // eV/nm, of the bond at `start`
-  std::array<Measured, PULL_STEPS + 1> force{};  // eV/nm, of the atoms, without twist
+  double edge_force = 0;                         // force of the bond at `start`, eV/nm
+  std::array<Measured, PULL_STEPS + 1> force{};  // force of the atoms without twist, eV/nm
   std::string ended_by;                          // "the force falls"
   double error = 0;                              // largest relative error of the law against energies of the pull
 
@@ -113,21 +113,22 @@ struct Stiffness {
   Measured EI;             // eV nm
   Measured GJ;             // eV nm
   Measured coupling;       // C, eV
-  Measured natural_twist;  // rad/nm, of the relaxed tube against the rolled sheet
+  Measured natural_twist;  // twist of the relaxed tube against the rolled sheet, rad/nm
   // Correlations of the errors of EA, GJ, coupling and natural twist by their fit; empty: not known.
   std::vector<std::vector<double>> correlation;
   Measured poisson;            // -d ln r / d strain
   Measured radius;             // nm, relaxed
   Measured atoms_per_length;   // 1/nm, relaxed
   double energy_per_atom = 0;  // eV, relaxed; 0 where it is not known (a table fitted again)
-  // rad and nm, of the second one in the relaxed tube; the lift is its radius minus that of the first one.
+  // Turn (rad) and rise (nm) of the second sublattice in the relaxed tube; the lift (nm) is its radius minus that of the
+  // first one.
   double sublattice_turn = 0, sublattice_rise = 0, sublattice_lift = 0;
-  double energy_offset = 0;    // eV/nm, of the minimum of the fit; near 0 in a finished table
+  double energy_offset = 0;    // energy at the minimum of the fit, eV/nm; near 0 in a finished table
   // Leading anharmonic terms of the energy per length: they set the 1 % limits.
-  Measured stretch_cubic;  // eV/nm, of e^3
-  Measured twist_cubic;    // eV nm^2, of s^3; zero but for chiral tubes
-  Measured twist_quartic;  // eV nm^3, of s^4
-  Measured bend_quartic;   // eV nm^3, of k^4
+  Measured stretch_cubic;  // coefficient of e^3, eV/nm
+  Measured twist_cubic;    // coefficient of s^3, eV nm^2; zero but for chiral tubes
+  Measured twist_quartic;  // coefficient of s^4, eV nm^3
+  Measured bend_quartic;   // coefficient of k^4, eV nm^3
   AnharmonicFit anharmonic;
   PullFit pull;
   double surface_density() const;  // atoms per nm^2 of the relaxed shell

@@ -50,27 +50,6 @@ LatticeVector cell_near(Chirality c, double shear, double tolerance, double min_
   return *best;
 }
 
-// Atoms as LAMMPS dumped them, in order of their ids.
-std::vector<Vector3> read_atoms(const RunContext& run, const std::string& name, std::size_t count) {
-  const std::string path = run.folder + "/" + name;
-  if (!std::filesystem::exists(path)) refuse_full_disk(run.folder);
-  std::istringstream lines(read_file(path));
-  std::vector<Vector3> atoms;
-  std::string line;
-  while (std::getline(lines, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
-  }
-  while (std::getline(lines, line)) {
-    std::istringstream words(line);
-    long id = 0;
-    double x = 0, y = 0, z = 0;
-    if (words >> id >> x >> y >> z) atoms.push_back(Vector3(x, y, z) * angstrom);
-  }
-  if (atoms.size() == count) return atoms;
-  refuse_full_disk(run.folder);
-  throw LammpsError(
-      fmt::format("LAMMPS left {} of {} atoms in {}; the disk may be full", atoms.size(), count, path));
-}
-
 // Mean displacement of the second sublattice against the first, from where `shape` places them. The mirror of an
 // armchair tube keeps the one of the two, that of a zigzag tube the other at 0. A twofold axis, which swaps the
 // sublattices of one species, keeps the lift at 0.

@@ -31,7 +31,12 @@ struct LineFit {
   std::vector<ContactPoint> u, parallel_curve, crossed_curve;
   double seconds_integral = 0, seconds_fit = 0;
 };
-LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options = {});
+// `i`, `j`: the walls of both tubes, inside first.
+LineFit fit_line(const AtomLaw& law, const std::vector<Shell>& i, const std::vector<Shell>& j,
+                 const FitOptions& options = {});
+inline LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options = {}) {
+  return fit_line(law, std::vector{i}, std::vector{j}, options);
+}
 
 // The universal law, fitted to all pairs of radii of the range, equal and unequal.
 struct UniversalFit {

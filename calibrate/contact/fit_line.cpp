@@ -10,7 +10,7 @@ namespace {
 
 Well well(const LineWell& w) { return {w.distance, w.energy}; }
 
-void add_curves(const PairIntegral& integral, const LineTargets& targets, LineFit& fit) {
+void add_curves(const WallsIntegral& integral, const LineTargets& targets, LineFit& fit) {
   const double right = 0.5 * units::pi;
   std::vector<double> parallel, crossed;
   targets.energies(fit.density, parallel, crossed);
@@ -46,17 +46,18 @@ FitResult fit_density(const LineTargets& targets, const AtomLaw& law, double uni
   return fit;
 }
 
-LineFit fit_line(const AtomLaw& law, const Shell& i, const Shell& j, const FitOptions& options) {
+LineFit fit_line(const AtomLaw& law, const std::vector<Shell>& i, const std::vector<Shell>& j,
+                 const FitOptions& options) {
   LineFit out;
   const double begin = steady_seconds();
-  const PairIntegral integral(law, i, j);
-  const double contact = i.radius + j.radius;
+  const WallsIntegral integral(law, i, j);
+  const double contact = i.back().radius + j.back().radius;
   const LineTargets targets(integral, contact, line_gaps(law));
   out.seconds_integral = seconds_since(begin);
 
   const double fit_begin = steady_seconds();
   out.density = with_gaps(line_gaps(law), contact);
-  out.fit = fit_density(targets, law, unit_of_K(law, i, j), options, out.density);
+  out.fit = fit_density(targets, law, unit_of_K(law, i.back(), j.back()), options, out.density);
   out.seconds_fit = seconds_since(fit_begin);
 
   out.parallel = targets.parallel_well;

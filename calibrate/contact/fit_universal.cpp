@@ -105,7 +105,7 @@ UniversalFit fit_universal(const AtomLaw& law, const std::vector<std::pair<doubl
   std::vector<TubePair> pairs;
   for (const auto& [ri, rj] : radii) {
     const Shell i{ri, unit_density}, j{rj, unit_density};
-    pairs.push_back({i, j, LineTargets(PairIntegral(law, i, j), ri + rj, gaps)});
+    pairs.push_back({i, j, LineTargets(WallsIntegral(law, i, j), ri + rj, gaps)});
   }
   UniversalFit out;
   out.law.epsilon = law.epsilon;

@@ -131,27 +131,36 @@ double PairIntegral::line_density(double rho) const {
   return abel_inverse(law_, i_, j_, rho, [&](double R) { return slope(R); });
 }
 
+namespace {
+
+// The smallest distance at which the slope changes from negative to positive.
+double rising_zero(const std::function<double(double)>& slope, double nearest, double end, double farthest);
+
+}  // namespace
+
 Well PairIntegral::parallel_well() const {
-  const double at = zero([&](double R) { return slope(R); });
+  const double at = rising_zero([&](double R) { return slope(R); }, nearest(), end(), contact_ + 10 * law_.sigma);
   return {at, parallel(at)};
 }
 
 // dX/dR = -2 pi R u(R)
 Well PairIntegral::crossed_well() const {
-  const double at = zero([&](double R) { return -line_density(R); });
+  const double at =
+      rising_zero([&](double R) { return -line_density(R); }, nearest(), end(), contact_ + 10 * law_.sigma);
   return {at, crossed(at)};
 }
 
-// The smallest distance at which the slope changes from negative to positive.
-double PairIntegral::zero(const std::function<double(double)>& slope) const {
+namespace {
+
+double rising_zero(const std::function<double(double)>& slope, double nearest, double end, double farthest) {
   constexpr double step = 0.02;
-  double a = nearest(), b = a + step;
+  double a = nearest, b = a + step;
   while (slope(a) < 0 && slope(b) < 0) {
     a = b;
     b += step;
-    if (b >= edges_.back() || b > contact_ + 10 * law_.sigma) break;
+    if (b >= end || b > farthest) break;
   }
-  if (!(slope(a) < 0 && slope(b) >= 0 && b < edges_.back()))
+  if (!(slope(a) < 0 && slope(b) >= 0 && b < end))
     throw std::invalid_argument("van der Waals: this pair of tubes has no well within the cutoff");
   gsl_function f;
   f.function = [](double R, void* data) { return (*static_cast<const std::function<double(double)>*>(data))(R); };
@@ -162,8 +171,59 @@ double PairIntegral::zero(const std::function<double(double)>& slope) const {
   gsl_root_fsolver_set(solver, &f, a, b);
   for (int k = 0; k < 60 && gsl_root_fsolver_x_upper(solver) - gsl_root_fsolver_x_lower(solver) > 1e-11; ++k)
     gsl_root_fsolver_iterate(solver);
-  const double root = gsl_root_fsolver_root(solver);
-  return root;
+  return gsl_root_fsolver_root(solver);
+}
+
+}  // namespace
+
+WallsIntegral::WallsIntegral(const AtomLaw& law, const std::vector<Shell>& i, const std::vector<Shell>& j)
+    : law_(law), contact_(i.back().radius + j.back().radius) {
+  const double nearest = contact_ + 0.4 * law.sigma;
+  for (auto a = i.rbegin(); a != i.rend(); ++a)
+    for (auto b = j.rbegin(); b != j.rend(); ++b) {
+      const double contact = a->radius + b->radius;
+      const bool outer = a == i.rbegin() && b == j.rbegin();
+      if (outer)
+        pairs_.emplace_back(law, *a, *b);
+      else if (contact + law.cutoff > nearest + 0.01)
+        pairs_.emplace_back(law, *a, *b, nearest - contact);
+    }
+}
+
+double WallsIntegral::parallel(double distance) const {
+  double sum = 0;
+  for (const PairIntegral& pair : pairs_) sum += pair.parallel(distance);
+  return sum;
+}
+
+double WallsIntegral::crossed(double distance) const {
+  double sum = 0;
+  for (const PairIntegral& pair : pairs_) sum += pair.crossed(distance);
+  return sum;
+}
+
+double WallsIntegral::line_density(double rho) const {
+  double sum = 0;
+  for (const PairIntegral& pair : pairs_) sum += pair.line_density(rho);
+  return sum;
+}
+
+Well WallsIntegral::parallel_well() const {
+  const auto slope = [&](double R) {
+    double sum = 0;
+    for (const PairIntegral& pair : pairs_) sum += pair.slope(R);
+    return sum;
+  };
+  const PairIntegral& outer = pairs_.front();
+  const double at = rising_zero(slope, outer.nearest(), outer.end(), contact_ + 10 * law_.sigma);
+  return {at, parallel(at)};
+}
+
+Well WallsIntegral::crossed_well() const {
+  const PairIntegral& outer = pairs_.front();
+  const double at = rising_zero([&](double R) { return -line_density(R); }, outer.nearest(), outer.end(),
+                                contact_ + 10 * law_.sigma);
+  return {at, crossed(at)};
 }
 
 }  // namespace ropewalk::calibrate

@@ -20,6 +20,7 @@ class PairIntegral {
   PairIntegral(const AtomLaw& law, const Shell& i, const Shell& j, double nearest = 0);
 
   double nearest() const { return edges_.front(); }  // of R, nm
+  double end() const { return edges_.back(); }       // nm
   double slope(double distance) const;               // E', eV/nm^2
   double parallel(double distance) const;            // E, eV/nm
   double crossed(double distance) const;             // X, eV
@@ -28,13 +29,29 @@ class PairIntegral {
   Well crossed_well() const;  // at a right angle
 
  private:
-  double zero(const std::function<double(double)>& rising) const;
-
   AtomLaw law_;
   Shell i_, j_;
   double contact_;
   std::vector<double> edges_;                // limits of the parts in R
   std::vector<std::vector<double>> series_;  // Chebyshev coefficients of E' h^8 for each part
+};
+
+// The same of two tubes of several walls, inside first: the sum over all pairs of walls that reach one another.
+class WallsIntegral {
+ public:
+  WallsIntegral(const AtomLaw& law, const std::vector<Shell>& i, const std::vector<Shell>& j);
+  WallsIntegral(const AtomLaw& law, const Shell& i, const Shell& j) : WallsIntegral(law, std::vector{i}, {j}) {}
+
+  double parallel(double distance) const;      // E, eV/nm
+  double crossed(double distance) const;       // X, eV
+  double line_density(double rho) const;       // u, eV/nm^2
+  Well parallel_well() const;
+  Well crossed_well() const;  // at a right angle
+
+ private:
+  AtomLaw law_;
+  double contact_;  // of the outer walls
+  std::vector<PairIntegral> pairs_;
 };
 
 // u(rho) from the slope E'(R).

@@ -53,7 +53,7 @@ double unit_of_K(const AtomLaw& law, const Shell& i, const Shell& j) {
   return law.epsilon * i.density * j.density * law.sigma * law.sigma;
 }
 
-LineTargets::LineTargets(const PairIntegral& integral, double contact, const LineGaps& gaps)
+LineTargets::LineTargets(const WallsIntegral& integral, double contact, const LineGaps& gaps)
     : parallel_well(integral.parallel_well()), crossed_well(integral.crossed_well()) {
   // The grid contains the smallest distance at which the error is evaluated, since the error is steepest there.
   const double end = contact + gaps.cutoff, judged = parallel_well.distance - inside;

@@ -24,7 +24,7 @@ double unit_of_K(const AtomLaw& law, const Shell& i, const Shell& j);
 
 class LineTargets {
  public:
-  LineTargets(const PairIntegral& integral, double contact, const LineGaps& gaps);
+  LineTargets(const WallsIntegral& integral, double contact, const LineGaps& gaps);
 
   std::size_t size() const { return 2 * distance_.size(); }
   // Both energies of a density at all distances.

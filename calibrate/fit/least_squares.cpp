@@ -20,7 +20,7 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-constexpr double on_bound = 1e-9;    // of the box: a parameter so close to a bound is at the bound
+constexpr double on_bound = 1e-9;    // fraction of the box: a parameter so close to a bound is at the bound
 constexpr double rank_limit = 1e-8;  // relative to the largest singular value of J with columns of unit length
 constexpr double bad_point = 1e12;   // objective where a residual is not finite; elsewhere it is about 1
 

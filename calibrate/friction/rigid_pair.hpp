@@ -16,8 +16,8 @@ namespace ropewalk::calibrate {
 
 struct Register {
   double turn_a = 0, turn_b = 0;  // rad, about the axes
-  double shift = 0;               // nm, of b along the axis
-  double tilt = 0;                // rad, of b about the line between the axes
+  double shift = 0;               // shift of b along the axis, nm
+  double tilt = 0;                // turn of b about the line between the axes, rad
 };
 
 struct RegisterForces {

@@ -54,7 +54,7 @@ std::vector<Pressed> pressed_strengths(const RigidPair& pair, const std::vector<
 
 struct Crossed {
   double angle = 0;  // rad
-  Measured force;    // eV/nm, of all of b
+  Measured force;    // force on all of b, eV/nm
 };
 std::vector<Crossed> crossed_strengths(const RigidPair& pair, const std::vector<Register>& at,
                                        const std::vector<double>& angles);

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "atomistic/runs.hpp"
+#include "contact/integral.hpp"
 #include "atoms/lattice.hpp"
 #include "io/clocks.hpp"
 #include "io/data_files.hpp"
@@ -24,6 +25,22 @@ namespace ropewalk::calibrate {
 namespace {
 
 constexpr double right_angle = 0.5 * units::pi;
+
+// Walls are relaxed beside one another with the law up to here (nm): what lies beyond moves them by some 1e-4 of their
+// distance, and would cost ten times the pairs.
+constexpr double relaxing_cutoff = 1.2;
+
+// The stiffness as the walls carry, with the rows of the other way and of each wall after its own.
+Stiffness as_carried(const WalledStiffness& walled, bool outer) {
+  Stiffness out = outer ? walled.outer : walled.all;
+  const Stiffness& other = outer ? walled.all : walled.outer;
+  for (AtomisticRow row : other.rows) {
+    row.kind = (outer ? "held-all-" : "held-outer-") + row.kind;
+    out.rows.push_back(row);
+  }
+  out.rows.insert(out.rows.end(), walled.wall_rows.begin(), walled.wall_rows.end());
+  return out;
+}
 
 // --- Quantities of the file -----------------------------------------------------------------------------
 
@@ -67,8 +84,12 @@ Measured scaled(const Measured& m, double factor) {
 void add_tube(const Calibration& c, Quantities& q) {
   const Stiffness& s = c.stiffness;
   q.section("tube");
-  q.calibrated("radius", s.radius, "nm", "mean over the atoms of the relaxed tube");
-  q.calibrated("atoms_per_length", s.atoms_per_length, "1/nm", "of the relaxed tube");
+  if (c.walled)
+    q.calibrated("contact_radius", s.radius, "nm", "of the outer wall: mean over the atoms of the relaxed tube");
+  else
+    q.calibrated("radius", s.radius, "nm", "mean over the atoms of the relaxed tube");
+  q.calibrated("atoms_per_length", s.atoms_per_length, "1/nm",
+               c.walled ? "of all walls of the relaxed tube" : "of the relaxed tube");
   q.chosen("element_length", 2 * s.radius.value, "nm", "2 r; any length will do with the line law");
 }
 
@@ -93,7 +114,56 @@ void add_lattice(const Calibration& c, Quantities& q) {
   }
 }
 
+// Each wall as it is within the tube.
+void add_walls(const Calibration& c, Quantities& q) {
+  const double unit = units::eV_in_nN_nm;
+  int k = 0;
+  for (const WallStiffness& wall : c.walled->walls) {
+    const Chirality of = wall.rest.c;
+    q.section(fmt::format("wall.{}", ++k));
+    q.calibrated("radius", wall.radius, "nm", fmt::format("({},{}), relaxed with the other walls", of.n, of.m));
+    q.calibrated("atoms_per_length", wall.atoms_per_length, "1/nm");
+    q.calibrated("EA", scaled(wall.EA, unit), "nN", "energy of its atoms, all walls held");
+    q.calibrated("EI", scaled(wall.EI, unit), "nN nm^2");
+    q.calibrated("GJ", scaled(wall.GJ, unit), "nN nm^2");
+  }
+}
+
+// The shear stiffness of walls that all bend along.
+Measured shear_of_walls(const Calibration& c) {
+  Measured sum;
+  for (const WallStiffness& wall : c.walled->walls) {
+    const double k = thin_tube_shear({wall.EA.value, wall.EI.value, wall.GJ.value}, wall.radius.value);
+    sum.value += k;
+    sum.standard_error += k * wall.GJ.standard_error / wall.GJ.value;
+  }
+  return scaled(sum, units::eV_in_nN_nm);
+}
+
+void add_walled_bond(const Calibration& c, Quantities& q) {
+  const double unit = units::eV_in_nN_nm;
+  const bool outer = c.request.outer_carries;
+  q.section("bond");
+  const char* of = outer ? "of [held.outer]: finite specimens of two lengths, differenced"
+                         : "of [held.all]: finite specimens of two lengths, differenced";
+  q.calibrated("EA", scaled(c.stiffness.EA, unit), "nN", of);
+  q.calibrated("EI", scaled(c.stiffness.EI, unit), "nN nm^2", of);
+  q.calibrated("GJ", scaled(c.stiffness.GJ, unit), "nN nm^2", of);
+  q.derived("kGA", shear_of_walls(c), "nN", "sum over the walls, as thin tubes: Cowper, J. Appl. Mech. 33, 335 (1966)");
+  for (const auto& [way, s] : {std::pair{"held.all", &c.walled->all}, std::pair{"held.outer", &c.walled->outer}}) {
+    q.section(way);
+    q.calibrated("EA", scaled(s->EA, unit), "nN", s == &c.walled->all ? "all walls held" : "walls inside are free");
+    q.calibrated("EI", scaled(s->EI, unit), "nN nm^2");
+    q.calibrated("GJ", scaled(s->GJ, unit), "nN nm^2");
+  }
+}
+
 void add_bond(const Calibration& c, Quantities& q) {
+  if (c.walled) {
+    add_walls(c, q);
+    add_walled_bond(c, q);
+    return;
+  }
   const double unit = units::eV_in_nN_nm;
   q.section("bond");
   q.calibrated("EA", scaled(c.stiffness.EA, unit), "nN", "periodic twisted cells");
@@ -137,10 +207,10 @@ void add_line(const Calibration& c, Quantities& q) {
   }
   q.chosen("lj_cutoff", std::isfinite(law.cutoff) ? law.cutoff : 0, "nm", "truncated, not shifted; 0: none");
   const Stiffness& s = c.stiffness;
-  const double density = s.surface_density();
+  const double density = c.shell().density;
   const double density_error = density * std::hypot(s.radius.standard_error / s.radius.value,
                                                     s.atoms_per_length.standard_error / s.atoms_per_length.value);
-  q.derived("surface_density", {density, density_error}, "1/nm^2", "atoms per area of the relaxed shell");
+  q.derived("surface_density", {density, density_error}, "1/nm^2", c.walled ? "atoms per area of the outer wall" : "atoms per area of the relaxed shell");
   q.calibrated("K", {d.K, se[0]}, "eV/nm^2", fmt::format("fit error {:.1e} of the well", c.line.error));
   q.calibrated("s", {d.s, se[1]}, "nm");
   q.calibrated("c", {d.c, se[2]}, "nm");
@@ -159,6 +229,9 @@ void add_line(const Calibration& c, Quantities& q) {
   if (c.registry)
     q.derived("registry", {c.registry->deviation, 0}, "1",
               "standard deviation of the pair energy over all registries of the atoms, over the well");
+  if (c.walled)
+    q.derived("cutoff_loss", {c.cutoff_loss, 0}, "1",
+              "part of the well of parallel tubes beyond lj_cutoff; it is in the errors of pair_energy and cross90_energy");
   if (!c.universal) return;
   q.section("contact.line.universal");
   q.derived("error", {c.universal_error, 0}, "1",
@@ -209,10 +282,12 @@ void add_paper(const Calibration& c, Quantities& q) {
 void add_atomistic(const Calibration& c, Quantities& q) {
   const Stiffness& s = c.stiffness;
   q.section("atomistic");
-  q.calibrated("natural_twist", s.natural_twist, "rad/nm", "of the relaxed tube against the rolled sheet");
+  q.calibrated("natural_twist", s.natural_twist, "rad/nm",
+               c.walled ? "of the tube against its walls at rest together" : "of the relaxed tube against the rolled sheet");
   q.calibrated("coupling", scaled(s.coupling, units::eV_in_nN_nm), "nN nm", "of stretch and twist");
-  q.calibrated("poisson", s.poisson, "1", "-d ln r / d strain");
+  q.calibrated("poisson", s.poisson, "1", c.walled ? "-d ln r / d strain, of the outer wall" : "-d ln r / d strain");
   q.calibrated("energy_per_atom", {s.energy_per_atom, 0}, "eV", "of the relaxed tube");
+  if (c.walled) return;
   q.calibrated("sublattice_turn", {s.sublattice_turn, 0}, "rad", "of the second sublattice against the first");
   q.calibrated("sublattice_rise", {s.sublattice_rise, 0}, "nm", "likewise");
   if (const Honeycomb& h = c.request.honeycomb(); !h.one_species())
@@ -222,7 +297,9 @@ void add_atomistic(const Calibration& c, Quantities& q) {
 
 void add_validity(const Calibration& c, Quantities& q) {
   const Envelope& e = c.stiffness.envelope;
-  const std::string note = e.measured ? "incremental LAMMPS runs" : "scaling rule; --envelope measures it";
+  const std::string note = e.measured  ? "incremental LAMMPS runs"
+                           : c.walled ? "scaling rule of the outer wall alone: walls inside of it move the limit out"
+                                      : "scaling rule; --envelope measures it";
   const auto add = [&](const char* key, const Measured& m, const char* unit) {
     if (!(m.value > 0)) return;
     e.measured ? q.calibrated(key, m, unit, note) : q.derived(key, m, unit, note);
@@ -270,6 +347,7 @@ double error_against(const LineFit& direct, const LineDensity& density) {
 // registry.
 std::optional<RegistrySpread> registry_of(const Calibration& c) {
   if (!std::isfinite(c.request.law.cutoff)) return std::nullopt;
+  // The corrugation of several walls is that of the outer ones within reach of the usual cutoff.
   const Chirality tube = c.request.chirality;
   const Honeycomb& h = c.request.honeycomb();
   const double a = h.lattice_constant * c.stiffness.radius.value / tube_radius(tube, h.lattice_constant);
@@ -278,10 +356,14 @@ std::optional<RegistrySpread> registry_of(const Calibration& c) {
   for (std::size_t k = 0; k < cell.atoms.size(); ++k)
     column.second.push_back(!h.one_species() && k >= cell.atoms.size() / 2 ? 1 : 0);
   const Shell shell{cell.radius, graphene_density(a)};
-  const Well well = parallel_well(c.request.law, shell, shell);
-  RegistrySpread s =
-      registry_spread(c.request.laws(), column, column, well.distance, cell.atoms.size() > 300 ? 300 : 2000);
-  for (double* value : {&s.mean, &s.deviation, &s.least, &s.largest}) *value /= well.energy;
+  AtomLaw law = c.request.law;
+  if (c.walled) law.cutoff = std::min(law.cutoff, relaxing_cutoff);
+  const Well well = parallel_well(law, shell, shell);
+  SpeciesLaws laws = c.request.laws();
+  for (AtomLaw& one : laws) one.cutoff = law.cutoff;
+  RegistrySpread s = registry_spread(laws, column, column, well.distance, cell.atoms.size() > 300 ? 300 : 2000);
+  for (double* value : {&s.mean, &s.deviation, &s.least, &s.largest})
+    *value /= c.walled && value == &s.deviation ? c.line.parallel.energy : well.energy;
   s.deviation = std::fabs(s.deviation);
   return s;
 }
@@ -289,7 +371,7 @@ std::optional<RegistrySpread> registry_of(const Calibration& c) {
 void warn(Calibration& c) {
   c.warnings = c.stiffness.warnings;
   if (!c.line.fit.usable()) c.warnings.push_back("line law: " + c.line.fit.message);
-  if (!c.paper.fit.usable()) c.warnings.push_back("paper law: " + c.paper.fit.message);
+  if (!c.walled && !c.paper.fit.usable()) c.warnings.push_back("paper law: " + c.paper.fit.message);
   if (c.universal_error > unusable_contact)
     c.warnings.push_back(
         fmt::format("the universal law is off by {:.2g} % of the well for this tube and left out: the set serves "
@@ -297,21 +379,12 @@ void warn(Calibration& c) {
                     100 * c.universal_error));
   else if (!c.universal)
     c.warnings.push_back(
-        "no universal law for this sigma and cutoff: the set serves scenes of one kind of tube; "
+        c.walled ? std::string("no universal law of several walls: the set serves scenes of one kind of tube")
+                 : "no universal law for this sigma and cutoff: the set serves scenes of one kind of tube; "
         "`ropewalk calibrate universal` makes one");
 }
 
 }  // namespace
-
-std::string Calibration::name() const {
-  return fmt::format("{}-{}-{}-{}", request.honeycomb().stem(), request.chirality.n, request.chirality.m,
-                     request.potential.name);
-}
-
-std::string CalibrationRequest::tube() const {
-  const std::string nm = fmt::format("({},{})", chirality.n, chirality.m);
-  return honeycomb().carbon() ? nm : nm + " " + honeycomb().name;
-}
 
 SpeciesLaws CalibrationRequest::laws() const {
   SpeciesLaws all = {law, law, law};
@@ -321,12 +394,44 @@ SpeciesLaws CalibrationRequest::laws() const {
   return all;
 }
 
+std::vector<Shell> Calibration::shells() const {
+  if (!walled) return {{stiffness.radius.value, stiffness.surface_density()}};
+  std::vector<Shell> out;
+  for (const WallStiffness& wall : walled->walls)
+    out.push_back({wall.radius.value, wall.atoms_per_length.value / (2 * units::pi * wall.radius.value)});
+  return out;
+}
+
+std::string CalibrationRequest::tube() const {
+  std::string text;
+  for (const Chirality c : walls.empty() ? std::vector{chirality} : walls)
+    text += fmt::format("{}({},{})", text.empty() ? "" : "@", c.n, c.m);
+  return honeycomb().carbon() ? text : text + " " + honeycomb().name;
+}
+
+std::string CalibrationRequest::name() const {
+  std::string text;
+  for (const Chirality c : walls.empty() ? std::vector{chirality} : walls)
+    text += fmt::format("{}{}-{}", text.empty() ? "" : "@", c.n, c.m);
+  return fmt::format("{}-{}-{}", honeycomb().stem(), text, potential.name);
+}
+
 Calibration calibrate(const CalibrationRequest& request) {
   const double begin = steady_seconds();
   Calibration c;
   c.request = request;
-  c.stiffness = measure_stiffness(request.chirality, request.potential, request.folder, request.stiffness);
+  const AtomLaw& law = request.law;
+  if (request.walls.empty()) {
+    c.stiffness = measure_stiffness(request.chirality, request.potential, request.folder, request.stiffness);
+  } else {
+    c.walled = measure_walls(request.walls, request.potential,
+                             {law.epsilon, law.sigma, std::min(law.cutoff, relaxing_cutoff)},
+                             request.outer_carries ? Holding::outer : Holding::all, request.folder,
+                             request.stiffness);
+    c.stiffness = as_carried(*c.walled, request.outer_carries);
+  }
   c.lammps = c.stiffness.lammps;
+  const std::vector<Shell> shells = c.shells();
   const Shell shell = c.shell();
   const auto say = [&](const char* text) {
     if (request.stiffness.lammps.interrupted && request.stiffness.lammps.interrupted())
@@ -334,12 +439,18 @@ Calibration calibrate(const CalibrationRequest& request) {
     if (request.stiffness.progress) request.stiffness.progress(text);
   };
   say("van der Waals contact: surface integral and line law");
-  c.line = fit_line(request.law, shell, shell);
-  say("van der Waals contact: the published form");
-  const double paper_begin = steady_seconds();
-  c.paper = fit_paper(request.law, shell, 2 * shell.radius);
-  c.paper_seconds = seconds_since(paper_begin);
-  c.universal = universal_law(request.law);
+  c.line = fit_line(law, shells, shells);
+  if (c.walled) {
+    AtomLaw whole = law;
+    whole.cutoff = infinite;
+    c.cutoff_loss = 1 - c.line.parallel.energy / WallsIntegral(whole, shells, shells).parallel_well().energy;
+  } else {
+    say("van der Waals contact: the published form");
+    const double paper_begin = steady_seconds();
+    c.paper = fit_paper(request.law, shell, 2 * shell.radius);
+    c.paper_seconds = seconds_since(paper_begin);
+    c.universal = universal_law(request.law);
+  }
   if (c.universal)
     c.universal_error =
         error_against(c.line, c.universal->density(shell.radius, shell.density, shell.radius, shell.density));
@@ -359,7 +470,8 @@ ContactSummary contact_summary(const Calibration& c) {
   const double area = 2 * std::hypot(s.radius.standard_error / s.radius.value,
                                      s.atoms_per_length.standard_error / s.atoms_per_length.value);
   const auto energy = [&](const Well& line, const Well& integral) {
-    return Measured{line.energy, std::hypot(line.energy - integral.energy, area * line.energy)};
+    return Measured{line.energy, std::hypot(std::hypot(line.energy - integral.energy, area * line.energy),
+                                            c.cutoff_loss * line.energy)};
   };
   return {{f.line_parallel.distance, std::hypot(misfit, 2 * s.radius.standard_error)},
           energy(f.line_parallel, f.parallel),
@@ -374,6 +486,9 @@ std::string stiffness_csv(const Calibration& c) {
   origin.potential = c.request.potential.name;
   origin.potential_hash = c.request.potential.file_hash;
   origin.lammps = c.lammps.text;
+  if (c.walled)
+    origin.notes = {fmt::format("walls {}: the chirality above is that of the outer one; {} carried", c.request.tube(),
+                                c.request.outer_carries ? "the outer wall" : "all walls")};
   return atomistic_csv(c.stiffness.rows, origin);
 }
 
@@ -382,7 +497,8 @@ std::string contact_csv(const Calibration& c) {
       "# Surface integral of two {} tubes, r = {} nm, {} atoms per nm^2, and the line law fitted to it.\n"
       "# Lennard-Jones {} eV, {} nm, cutoff {} nm. Units: density eV/nm^2, parallel eV/nm, crossed eV.\n"
       "{}\n",
-      c.request.tube(), c.shell().radius, c.shell().density, c.request.law.epsilon, c.request.law.sigma, c.request.law.cutoff, column_names(contact_columns()));
+      c.request.tube(), c.shell().radius, c.shell().density, c.request.law.epsilon,
+      c.request.law.sigma, c.request.law.cutoff, column_names(contact_columns()));
   const auto curve = [&](const char* kind, const std::vector<ContactPoint>& points) {
     for (const ContactPoint& p : points)
       text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g}\n", kind, p.distance, p.angle / units::degree, p.integral,
@@ -397,9 +513,14 @@ std::string contact_csv(const Calibration& c) {
 ParameterSet parameter_set(const Calibration& c, const std::string& stiffness_file,
                            const std::string& contact_file) {
   ParameterSet set;
-  set.name = c.name();
+  set.name = c.request.name();
   set.honeycomb = c.request.honeycomb();
   set.chirality = c.request.chirality;
+  if (c.walled) {
+    set.outer_carries = c.request.outer_carries;
+    for (const WallStiffness& wall : c.walled->walls)
+      set.walls.push_back({wall.rest.c, wall.radius.value, wall.atoms_per_length.value});
+  }
   set.reference = c.request.potential.reference;
   set.doi = c.request.potential.doi;
   Quantities q(set);
@@ -464,13 +585,12 @@ void put_pull(ParameterSet& set, const PullFit& pull) {
 
 std::string parameter_file_comment(const Calibration& c) {
   std::string text = fmt::format(
-      "# Calibrated parameters of the ({},{}) {} nanotube, {} potential. Made by\n#   {}\n"
-      "# Stiffnesses from relaxed atomistic cells (LAMMPS), contact from the surface integral of the "
+      "# Calibrated parameters of the {} {} nanotube, {} potential. Made by\n#   {}\n"
+      "# Stiffnesses from relaxed atomistic {} (LAMMPS), contact from the surface integral of the "
       "Lennard-Jones\n"
       "# law; the tables named under [provenance] hold every energy that was fitted.\n",
-      c.request.chirality.n, c.request.chirality.m,
-      c.request.honeycomb().carbon() ? "carbon" : c.request.honeycomb().name, c.request.potential.name,
-      c.request.command);
+      c.request.tube(), c.request.honeycomb().carbon() ? "carbon" : c.request.honeycomb().name,
+      c.request.potential.name, c.request.command, c.walled ? "specimens" : "cells");
   for (const std::string& w : c.warnings) text += "# Warning: " + w + "\n";
   return text;
 }

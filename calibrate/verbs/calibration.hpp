@@ -7,13 +7,16 @@
 #include <vector>
 
 #include "atomistic/stiffness.hpp"
+#include "atomistic/walls.hpp"
 #include "contact/fit_contact.hpp"
 #include "model/parameters.hpp"
 
 namespace ropewalk::calibrate {
 
 struct CalibrationRequest {
-  Chirality chirality;
+  Chirality chirality;           // of the outer wall
+  std::vector<Chirality> walls;  // of several walls, inside first; empty for a tube of one wall
+  bool outer_carries = false;    // several walls: the outer one alone carries stretch and torsion
   Potential potential;
   AtomLaw law;
   StiffnessOptions stiffness;
@@ -21,7 +24,8 @@ struct CalibrationRequest {
   std::string command;  // as typed, for the record
 
   const Honeycomb& honeycomb() const { return potential.honeycomb; }
-  std::string tube() const;  // "(10,10) BN"; "(10,10)" of carbon
+  std::string tube() const;  // "(10,10)", "(5,5)@(10,10)", "(10,10) BN"
+  std::string name() const;  // "cnt-10-10-tersoff", "cnt-5-5@10-10-tersoff", "bn-10-10-extep"
   // Between the atoms of both species; `law` is what they are together in continuous shells.
   SpeciesLaws laws() const;
 };
@@ -29,8 +33,10 @@ struct CalibrationRequest {
 struct Calibration {
   CalibrationRequest request;
   LammpsVersion lammps;
-  Stiffness stiffness;
+  Stiffness stiffness;  // of several walls: as they carry
+  std::optional<WalledStiffness> walled;
   LineFit line;
+  double cutoff_loss = 0;  // several walls: the part of the well that the cutoff of the atom-atom law leaves out
   PaperFit paper;
   std::optional<UniversalLine> universal;  // empty: no universal law for this sigma and cutoff
   double universal_error = 0;              // error of the universal law for this tube, as LineFit::error
@@ -40,8 +46,8 @@ struct Calibration {
   std::vector<std::string> warnings;
   double seconds = 0, paper_seconds = 0;
 
-  Shell shell() const { return {stiffness.radius.value, stiffness.surface_density()}; }
-  std::string name() const;  // "cnt-10-10-tersoff", "bn-10-10-extep"
+  Shell shell() const { return shells().back(); }  // of the outer wall
+  std::vector<Shell> shells() const;               // inside first
 };
 
 // Throws InputError, LammpsError.

@@ -281,7 +281,7 @@ void renew_shear(const Settings& s, ParameterSet& set) {
   const auto is_free = [&](const char* name) {
     return std::find(s.free.begin(), s.free.end(), name) != s.free.end();
   };
-  if (set.filament || (!is_free("EA") && !is_free("GJ"))) return;
+  if (set.filament || !set.walls.empty() || (!is_free("EA") && !is_free("GJ"))) return;
   const auto value = [&](const char* key) { return find_quantity(set, key)->value * units::nN_nm; };
   BondStiffness bond;
   bond.stretch = value("bond.EA");

@@ -26,7 +26,7 @@ struct ShowArguments {
 
 namespace fs = std::filesystem;
 
-constexpr double wall_thickness = 0.335;    // nm, of the published section
+constexpr double wall_thickness = 0.335;    // wall of the published section, nm
 constexpr double GPa = units::eV_in_nN_nm;  // nN/nm^2 is GPa; stiffnesses are kept in eV
 constexpr const char* page_mark = "<!-- ropewalk calibrate show -->";
 

@@ -11,12 +11,16 @@
 namespace ropewalk::calibrate {
 
 struct CalibrateArguments {
-  std::string chirality;
-  std::string atoms = "C";     // or what potential_of_atoms() takes
-  std::string potential;       // empty: the first of these atoms
+  std::string chirality;      // "10,10", "(5,5)@(10,10)"
+  int walls = 0;              // found for outer_diameter; 0: chirality has them
+  double outer_diameter = 0;  // nm
+  std::string carried_by;     // several walls: "outer", "all"; empty: by whether they lock
+  std::string atoms = "C";    // or what potential_of_atoms() takes
+  std::string potential;      // empty: the first of these atoms
   std::string user_potential;  // file of pair_style and pair_coeff lines
   std::string lj;              // empty: that of the atoms
   double lj_cutoff = 1.2;  // nm; 0: none
+  bool usual_cutoff = true;  // nobody chose: 3 nm for several walls
   bool envelope = false;
   std::string out;   // empty: NAME.toml in the current directory
   std::string keep;  // empty: LAMMPS's files are removed at the end
@@ -25,7 +29,7 @@ struct CalibrateArguments {
   bool quiet = false;
   StiffnessOptions stiffness;
   std::string envelope_of;            // a set whose envelope is taken
-  std::string bend_lengths = "6,10";  // nm
+  std::string bend_lengths;           // nm; empty: 6,10 of one wall, 3,6 of several
   std::string command;                // as typed
 };
 int calibrate_command(const CalibrateArguments& arguments);

@@ -538,7 +538,7 @@ struct AtomFiles::Impl {
   std::string file;
   bool cut_off = false, states_time = true;
   std::int64_t frames = 0;  // that were read
-  double time = 0;          // ps, of the last one
+  double time = 0;          // time of the last one, ps
   bool opened = false;      // no frame of the present file was read
   std::vector<std::int64_t> first_ids;  // ids in the first frame, in rising order
 

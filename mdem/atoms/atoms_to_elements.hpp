@@ -28,7 +28,7 @@ struct LabelledAtom {
 struct SectionShape {
   double radius = 0;                // nm, mean
   double ovality = 0;               // nm, amplitude of the radius in 2 phi
-  double shear_x = 0, shear_y = 0;  // rad, of the centre line against the section's normal, in the body frame
+  double shear_x = 0, shear_y = 0;  // angles of the centre line to the section's normal, in the body frame, rad
 };
 
 class ElementFit {

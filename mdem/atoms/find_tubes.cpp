@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t smallest_wall = 60;     // atoms
 constexpr std::size_t smallest_sheet = 100;   // atoms, to be counted as such
 constexpr double whole_part = 0.85;           // of the sites near an end, where a tube begins
-constexpr double window = 0.4;                // nm, in which they are counted
+constexpr double window = 0.4;                // width of the window in which they are counted, nm
 constexpr double shortest_circumference = 5;  // lattice constants, of tubes with a radius of 0.2 nm
 constexpr double longest_burgers = 12;  // lattice constants: a longer mismatch is no defect but a second closure
 constexpr std::uint32_t nobody = 0xffffffff;

@@ -34,7 +34,7 @@ struct FoundTube {
   // Defects of this wall: rings that are not of six atoms, atoms with two neighbours in it, and with four or more.
   long pentagons = 0, heptagons = 0, open_atoms = 0, crowded = 0;
   bool cap_below = false, cap_above = false;
-  Vector3 centre = Vector3::Zero();  // nm, of its atoms
+  Vector3 centre = Vector3::Zero();  // mean of its atoms, nm
 };
 
 // Cuts a tube to whole rows at both ends, moves its first site to where it then begins, and counts again what has
@@ -45,7 +45,7 @@ void turn_sites(FoundTube& tube, int parts);
 
 struct FoundTubes {
   std::vector<FoundTube> tubes;    // ordered from the middle of all of them outwards
-  std::vector<Vector3> positions;  // nm, of all atoms: those of a tube are the images that hang together
+  std::vector<Vector3> positions;  // positions of all atoms, nm: those of a tube are the images that hang together
   long loose = 0;                  // carbon atoms in no tube
   long sheets = 0;                 // connected parts of them that are larger than 100 atoms, and no tubes
 };

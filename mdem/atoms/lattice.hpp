@@ -82,7 +82,7 @@ long height_in_thirds(Chirality c, const Site& site);
 // chiral tube has such shifts, and one of two species has a lift.
 struct TubeShape {
   double radius = 0;              // nm
-  double length_per_hexagon = 0;  // nm, of the axis
+  double length_per_hexagon = 0;  // length of the axis, nm
   double twist = 0;               // rad/nm, right-handed positive
   double arc_shift = 0;           // rad
   double height_shift = 0;        // nm
@@ -104,7 +104,7 @@ std::vector<Vector3> tube_atoms(Chirality c, const TubeShape& shape, long hexago
                                 double bottom = 0);
 
 struct TubeCell {
-  std::vector<Vector3> atoms;  // nm, on the cylinder of `radius`, axis z, 0 <= z < length
+  std::vector<Vector3> atoms;  // atoms on the cylinder of `radius`, axis z, 0 <= z < length, nm
   double radius = 0;           // nm
   double length = 0;           // nm
   double twist = 0;            // rad/nm, uniform, with respect to the rolled sheet; right-handed positive

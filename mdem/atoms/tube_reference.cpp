@@ -19,6 +19,7 @@ double number_of(const ParameterSet& set, const char* key) {
 
 TubeReference reference_of(const ParameterSet& set) {
   refuse_filament(set, "its elements do not become atoms, nor atoms its elements", "take a set of a tube");
+  refuse_several_walls(set, "its elements do not become atoms, nor atoms its elements", "take a set of one wall");
   constexpr double slack = 0.1;
   const auto off = [](double value, double of_sheet) { return std::fabs(value / of_sheet - 1) > slack; };
   const double a = set.honeycomb.lattice_constant;

@@ -21,7 +21,7 @@ struct StepCost {
   int threads = 1;
   double after = 0;  // ps: when it was measured
   double pairs = 0;
-  double skin = 0;                   // nm, of the last list
+  double skin = 0;                   // skin of the last list, nm
   double bytes = 0, list_bytes = 0;  // per element
   double moved = 0;                  // bytes per element and step, about the least
   double peak_bytes = 0;             // largest resident memory of the program so far

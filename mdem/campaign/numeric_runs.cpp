@@ -19,7 +19,7 @@ namespace {
 constexpr int other_starts = 3;
 constexpr double first_order = 2, second_order = 4.0 / 3;  // 1/(1 - 2^-p)
 constexpr double half_error = 0.71;                        // factor on a setting of second order that halves its error
-constexpr double nudge = 0.01;  // K, of velocities that are far too small to matter by themselves
+constexpr double nudge = 0.01;  // temperature of velocities that are far too small to matter by themselves, K
 
 class Planning {
  public:

@@ -19,8 +19,8 @@ struct NumericRun {
   std::string folder;  // below `errors`
   std::string words;   // "half the rate"
   std::string scene;   // its text
-  double cost = 1;     // processor time, in that of the run
-  double times = 1;    // its time, in that of the run
+  double cost = 1;     // processor time over that of the run
+  double times = 1;    // duration over that of the run
 };
 
 struct NumericPlan {

@@ -10,7 +10,7 @@ namespace ropewalk {
 
 struct RunInputs {
   std::string scene;
-  std::vector<std::string> sets, files;  // texts, of the tube types and of the drives
+  std::vector<std::string> sets, files;  // their texts: sets of the tube types, files of the drives
   double until_ps = -1;                  // time at which it stops; -1: the scene's end
 };
 // Those that a run was made with, which has ended.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double below = 0.25, above = 1.5;  // parts of the compact state's winding
 constexpr double steepest = 20 * units::degree;
-constexpr double defects = 6;       // of Q, from which on a rope counts as one with defects
+constexpr double defects = 6;       // a rope of a larger packing charge Q counts as one with defects
 constexpr double well_known = 0.1;  // of a twist: an estimate with a larger error is none
 
 const char* const longer = "twist.hold_ps, or run.duration_ps where other drives twist";

@@ -29,7 +29,7 @@ struct RestSide {
   double moved = 0;                      // deg: between the least and the largest twist
   double beta = 0, least = 0, most = 0;  // beta_deg: mean, and where it swings
   double Q = 0, voids = 0;               // voids: nm^2
-  double time = 0;                       // ps, at the end
+  double time = 0;                       // time at the end, ps
   Approach to_twist, to_beta;            // deg: where both are going
   RopeShape shape = RopeShape::straight;
   std::vector<LimitRecord> limits = {};  // that the run watched

@@ -17,7 +17,7 @@ struct StaticThreshold {
 
   std::string point;
   double below = none, above = none;  // stable; unstable
-  double growth = none;               // 1/ns, at `above`
+  double growth = none;               // growth rate at `above`, 1/ns
   std::string motion;                 // that grows there
   std::string why;                    // there is no bracket, or it was not narrowed as far as asked for
   int states = 0;                     // that were solved for

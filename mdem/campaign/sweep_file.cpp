@@ -29,7 +29,7 @@ namespace {
 constexpr const char* format_name = "ropewalk-sweep-1";
 constexpr std::size_t most_points = 100000;
 constexpr double relax_ps = 40;            // a guess: dynamics over this time cost as much as a relaxation
-constexpr std::size_t longest_name = 230;  // bytes, of a point; file systems take 255, "start-" and ".txt" included
+constexpr std::size_t longest_name = 230;  // name of a point, bytes; file systems take 255, with "start-" and ".txt"
 constexpr std::size_t longest_value = 24;  // in the name of a point; a longer one is named by its number
 
 // --- Reading [vary] ---

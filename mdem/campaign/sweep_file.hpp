@@ -84,7 +84,7 @@ enum class PointsAs {
 std::vector<SweepPoint> points_of(const Sweep& sweep, PointsAs as = PointsAs::built);
 // Makes the same of a point that is known by name.
 void complete(const Sweep& sweep, SweepPoint& point, PointsAs as = PointsAs::built);
-// The runs that these points share by their branches: each once.
+// The runs with which the branches of these points begin, each listed once.
 std::vector<SweepPoint> starts_of(const Sweep& sweep, const std::vector<SweepPoint>& points);
 
 // Points that differ in their seed alone.

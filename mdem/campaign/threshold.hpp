@@ -17,10 +17,10 @@ namespace ropewalk {
 struct Trial {
   double value = 0;
   bool passed = false;
-  double time = 0;                    // ps, at which it passed or was cut short
+  double time = 0;                    // when it passed or was cut short, ps
   bool cut_short = false;             // it did not pass, and a [[stop]] of the scene ended it before its time
-  std::optional<double> rate, error;  // 1/ps, of the exponential growth on the way; none: it cannot be told
-  std::optional<double> turn;         // rad, of the ends of the rope about its axis, mean under the whole load
+  std::optional<double> rate, error;  // rate of the exponential growth on the way, 1/ps; none: it cannot be told
+  std::optional<double> turn;         // turn of the ends of the rope about its axis, rad, mean under the whole load
   std::string shape;                  // shape of the rope then (observe/rope_shape.hpp); empty: not known
   std::string scene_hash;             // hash of its scene, parameter sets and state file
   std::string first_limit = {};       // key of the limit that was passed first; empty: none was, or it is not known
@@ -80,9 +80,9 @@ struct PhasePoint {
   std::vector<std::string> values;  // values of the keys, without the seed
   std::vector<Threshold> seeds;
   int tubes = 0;
-  double length = 0, radius = 0;      // nm, of the rope; zero where it is none
+  double length = 0, radius = 0;      // length and radius of the rope, nm; zero where it is none
   std::optional<HelixTheory> theory;  // where the key is the moment at both ends
-  double passing = 0;                 // nm, of the amplitude that is asked for; zero: it is another observable
+  double passing = 0;                 // the amplitude that is asked for, nm; zero: it is another observable
 
   bool begun() const;  // has a run that ended
   double by_bisection() const, bisection_error() const;

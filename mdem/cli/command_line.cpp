@@ -153,6 +153,22 @@ std::string refusal(const std::string& text, double value, const Bounds& bounds)
 
 void keep_help_within_width(CLI::App& app) { app.formatter(std::make_shared<HelpWithinWidth>()); }
 
+int run_program(CLI::App& app, int argc, const Program& program, const char* name, const std::string& typed,
+                const std::function<void()>& before, int (*failed)(const char*, const std::exception&)) {
+  try {
+    refuse_control_characters(program.argv);
+    if (before) before();
+    app.parse(argc, program.argv);
+    return code_at_exit(name, program.code);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return code_at_exit(name, app.exit(e));
+    std::fprintf(stderr, "%s: %s\n", name, usage_error(app, e, typed).c_str());
+    return 2;
+  } catch (const std::exception& e) {
+    return failed(name, e);
+  }
+}
+
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error, const std::string& program) {
   const std::vector<CLI::App*> parsed = app.get_subcommands();
   const CLI::App& at = parsed.empty() ? app : *parsed.front();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "io/error_exit.hpp"
 #include "io/toml_table.hpp"  // Bounds
 
 namespace ropewalk {
@@ -33,6 +34,13 @@ struct Program {
   std::string command;  // the same as typed in a shell, for verbs that write it into a file
   int code = 0;         // exit code of the verb that was called
 };
+
+// Parses the words of the program, which runs the verb, after `before`. Returns the exit code. An exception becomes one
+// line: a wrong command line a usage error, any other by `failed`. `name` begins the line; in remedies the program is
+// called `typed`.
+int run_program(CLI::App& app, int argc, const Program& program, const char* name, const std::string& typed,
+                const std::function<void()>& before = {},
+                int (*failed)(const char* name, const std::exception& error) = report_error);
 
 // How a program describes itself.
 struct Description {

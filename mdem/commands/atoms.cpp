@@ -27,8 +27,8 @@ struct AtomsArguments {
   SingleState state;        // a state file, but for its source
   std::string out;          // .data, .xyz or .extxyz
   long frame = -1;          // of a run; from the end if negative
-  std::string at;           // limit, whose place and time are wanted instead
-  double length = 12;       // nm, of that place
+  std::string at;           // key of a limit: the place and time at which it was passed, instead of `frame`
+  double length = 12;       // length of that place, nm
   bool step_again = false;  // to that moment, however long it takes
   std::string tubes;        // "0-18,20"; empty: all
   std::string between;      // "20,40" nm along each tube; empty: all

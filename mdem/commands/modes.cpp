@@ -26,7 +26,7 @@ struct ModesArguments {
   double shift = 50;        // 1/ns
   bool anyway = false;      // also where it does not rest
   std::string csv, frame;   // files to write; empty: none
-  double amplitude = 0.02;  // nm, of the frame
+  double amplitude = 0.02;  // amplitude of the frame, nm
   int threads = 0;
   bool force = false;
 };

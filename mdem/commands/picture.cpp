@@ -23,7 +23,7 @@ struct PictureArguments {
   std::string x;                    // column over which they are drawn; empty: time
   std::string colour;               // a word of colour_words(); empty: bending moment
   bool sections = false;
-  double width = 1040, highest = 200;  // pixels, of the figure and of each state
+  double width = 1040, highest = 200;  // width of the figure and largest height of each state, pixels
   double zoom = 2;                     // pixels of a PNG for one of the figure
   bool force = false;
 };

@@ -209,19 +209,10 @@ int ropewalk_main(int argc, char** argv) {
   add_bench(app, program);
   add_help(app);
   add_describe(app, description);
-  try {
-    refuse_control_characters(argv);
+  return run_program(app, argc, program, "ropewalk", "ropewalk", [&] {
     verb_before_help(app, argc, argv);
     hand_over_to_sibling(argv);
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return code_at_exit("ropewalk", app.exit(e));
-    std::fprintf(stderr, "ropewalk: %s\n", usage_error(app, e, "ropewalk").c_str());
-    return 2;
-  } catch (const std::exception& e) {
-    return report_error("ropewalk", e);
-  }
-  return code_at_exit("ropewalk", program.code);
+  });
 }
 
 }  // namespace ropewalk

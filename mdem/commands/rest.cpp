@@ -46,6 +46,13 @@ double viscosity_of(const RestArguments& a, const Scene& scene) {
   return scene.damping.contact.eta == standard ? of_the_default * default_viscosity : -1;
 }
 
+void print_theory(const RestTheory& theory, double length) {
+  fmt::print(
+      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
+      "they do not touch\n",
+      theory.compact * length / units::degree, theory.open * length / units::degree);
+}
+
 void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory, double length) {
   fmt::print("{:<8} {:>10} {:>12} {:>15} {:>18} {:>22} {:>6}  {}\n", "from", "time, ps", "twist, deg",
              "in 100 ps, deg", "goes to, deg", "beta, deg (range)", "Q", "branch");
@@ -54,10 +61,7 @@ void print_sides(const std::array<RestSide, 2>& sides, const RestTheory& theory,
                &s == &sides[0] ? "below" : "above", s.time, s.twist, 100 * s.drift,
                fmt::format("{:.4g} ± {:.1g}", s.to_twist.limit, s.to_twist.error()),
                fmt::format("{:.3g} ({:.3g} to {:.3g})", s.beta, s.least, s.most), s.Q, s.branch());
-  fmt::print(
-      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
-      "they do not touch\n",
-      theory.compact * length / units::degree, theory.open * length / units::degree);
+  print_theory(theory, length);
 }
 
 void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& theory, double length) {
@@ -68,10 +72,7 @@ void print_static_rests(const std::vector<StaticRest>& rests, const RestTheory& 
                r.found.force, r.found.above, r.branch());
     fmt::print("  {}\n", r.at_rest ? r.stability.words() : "not at rest: " + r.why);
   }
-  fmt::print(
-      "theory: {:.4g} deg if tubes are packed like a solid disc (a fifth too small for few tubes), {:.4g} deg if "
-      "they do not touch\n",
-      theory.compact * length / units::degree, theory.open * length / units::degree);
+  print_theory(theory, length);
 }
 
 int rest_by_statics(const RestArguments& a, const Scene& scene, const Prepared& p, const RestTheory& theory,

@@ -21,7 +21,7 @@ struct ViewArguments {
   std::string from = "side";  // view of the movie, as in PictureArguments
   std::string colour;         // colours of the movie, as in PictureArguments
   double fps = 15;            // frames per second of the movie
-  int width = 1280;           // pixels, of the movie
+  int width = 1280;           // width of the movie, pixels
   bool force = false;
 };
 

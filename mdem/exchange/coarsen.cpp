@@ -187,7 +187,7 @@ void Coarsening::choose_sets() {
   std::vector<int> types;
   for (const FoundTube& tube : found_.tubes) {
     const auto same = [&](const ParameterSet& set) {
-      return set.chirality.n == tube.chirality.n && set.chirality.m == tube.chirality.m;
+      return set.walls.empty() && set.chirality.n == tube.chirality.n && set.chirality.m == tube.chirality.m;
     };
     auto at = std::find_if(sets_.begin(), sets_.end(), same);
     if (at == sets_.end()) {

@@ -16,7 +16,7 @@ struct CoarsenSettings {
   std::vector<std::string> files;       // of one simulation, or names of what is read elsewhere
   std::vector<std::string> parameters;  // sets; empty: shipped ones of the carbon tubes that are found
   double element_length = 0;            // nm; 0: that of the first set
-  double time_step_fs = 1;              // of MD steps, in dumps that state no time
+  double time_step_fs = 1;              // length of MD steps in dumps that state no time
 };
 
 // What was found in the first frame, for a message and a table.
@@ -82,7 +82,7 @@ class Coarsening {
 
 struct CoarseRun {
   long frames = 0;
-  double time = 0;     // ps, of the last frame
+  double time = 0;     // time of the last frame, ps
   std::string passed;  // limits, in words; empty: none
 };
 // Makes the directory of a run with log, frames, limits, found-tubes.csv, sections.csv and its last state. No

@@ -10,7 +10,6 @@
 #include "model/error.hpp"
 #include "run/begin_run.hpp"
 #include "run/origin_changes.hpp"
-#include "run/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "sim/state/part_of_scene.hpp"
@@ -54,6 +53,8 @@ LammpsStart start_of(const Scene& scene, const Simulation& s) {
   if (!groups.strand_begin.empty())
     start.strand_begin.assign(groups.strand_begin.begin(), groups.strand_begin.end() - 1);
   start.strand_holes = groups.strand_holes;
+  start.images = groups.images;
+  start.period = groups.period;
   start.viscosity_inner = scene.damping.contact.inner;
   start.viscosity_outer = scene.damping.contact.outer;
   const bool others_break = std::any_of(scene.drives.begin(), scene.drives.end(),
@@ -107,37 +108,12 @@ constexpr const char* readme =
     "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope      (or, with SLURM: sbatch job.sh)\n"
     "Bring it back:    ropewalk import .      (then observe, report or resume this directory)\n";
 
-// `run` divides steps with which its energy balance does not close, and LAMMPS keeps them.
-void tell_of_long_steps(const Simulation& from, RunListener& listener) {
-  const auto closes = [&](int parts) {
-    Simulation trial = from;
-    trial.divide_steps(parts);
-    const EnergyMark mark = energy_mark(trial);
-    try {
-      trial.steps(StepControl::window);
-    } catch (const NumericalError&) {
-      return false;
-    }
-    return account_closes(mark, trial);
-  };
-  int parts = 1;
-  while (parts < StepControl::most && !closes(parts)) parts *= 2;
-  if (parts == 1) return;
-  const double step = from.time_step() / units::fs;
-  listener.tell(
-      fmt::format("note: with steps of {:.4g} fs the energy balance does not close in the first {} of them, and "
-                  "LAMMPS cannot divide them as `run` does: {}",
-                  step, StepControl::window,
-                  closes(parts) ? fmt::format("set run.time_step_fs = {:.4g} and export again", step / parts)
-                                : fmt::format("nor does it with {:.4g} fs; see how `run` ends", step / parts)));
-}
-
 void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   const LammpsDirectory dir{run.path};
   Scene scene = read_run_scene(run);
   const Prepared p = prepare(scene);
-  const Simulation s = simulation_at(run, scene, p, read_checkpoint(run));
-  if (scene.run.mode != RunOptions::Mode::relax) tell_of_long_steps(s, listener);
+  const RunCheckpoint c = read_checkpoint(run);
+  const Simulation s = simulation_at(run, scene, p, c);
   StateHeader header;
   header.step = s.state().step;
   header.elements = p.topology.elements();
@@ -145,6 +121,7 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
   header.work = s.work();
   header.dissipated = s.dissipated();
   header.heat = s.heat();
+  header.set(s.divided(), c.control);
   LammpsStart start = start_of(scene, s);
   const LammpsScript script = script_of(scene, p, s);
   const double apart = static_cast<double>(script.every) * script.time_step;

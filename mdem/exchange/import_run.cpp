@@ -18,8 +18,10 @@
 #include "run/colours.hpp"
 #include "run/events_file.hpp"
 #include "run/limit_watch.hpp"
+#include "run/moving_scene.hpp"
 #include "run/pending_files.hpp"
-#include "run/step_control.hpp"
+#include "run/period_energies.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "scene/lammps_files.hpp"
 #include "scene/lammps_states.hpp"
 #include "scene/state_csv.hpp"
@@ -49,7 +51,8 @@ class Import {
         start_(simulation_at(dir_, scene_, prepared_, checkpoint_)),
         reached_(start_.state().step),
         gauges_(start_.gauges()),
-        first_(start(scene_, prepared_).forces().energy) {}
+        first_(start(scene_, prepared_).forces().energy),
+        first_of_period_(energies_of_period(start(scene_, prepared_))) {}
 
   ImportedRun go(bool accept_changes) {
     const LammpsStart began = read_start(files_);
@@ -98,6 +101,7 @@ class Import {
       state.time = row->second.time;
       force_.force = force;
       force_.torque = torque;
+      steps_ = states.header();
       memory_ = std::move(memory);
       add(state, row->second);
     }
@@ -182,6 +186,10 @@ class Import {
     account.first_energy = checkpoint_.first_energy;
     account.first = first_;
     account.ends = readings_at(state);
+    if (first_of_period_)
+      account.period = EnergyAccount::Period{*energies_of_period(prepared_.topology, tubes_now, prepared_.interaction, state,
+                                                                 account.potential.terms),
+                                             *first_of_period_};
     log_ += log_line(log_row(observer_, scene_, tubes_now, state, account));
     check_limits(tubes_now, state, list, account);
     check_account(account, state.step);
@@ -225,9 +233,8 @@ class Import {
                                        account.potential.vdw, prepared_.state.size());
     if (!closes && !told_of_account_)
       listener_.tell(fmt::format(
-          "note: from step {} to {} the energy balance does not close. `run` would have gone back and divided "
-          "its steps of {:.4g} fs, LAMMPS kept them: set run.time_step_fs to half of that, and export and run it "
-          "again",
+          "note: from step {} to {} the energy balance does not close: set run.time_step_fs to half of {:.4g}, and "
+          "export and run it again",
           marked_at_, step, prepared_.time_step / units::fs));
     told_of_account_ = told_of_account_ || !closes;
     mark_ = now;
@@ -254,6 +261,7 @@ class Import {
   void write(std::int64_t from) {
     Simulation simulation = start(scene_, prepared_);
     simulation.set_memory(memory_);
+    simulation.divide_steps(static_cast<int>(steps_.divided));
     simulation.inherit_from(force_.force, force_.torque, {last_.work, last_.dissipated, last_.heat});
     simulation.inherit_from(gauges_.sums);
     checkpoint_.files.log = mark_of(log_);
@@ -261,6 +269,7 @@ class Import {
     if (!event_text_.empty()) checkpoint_.files.events = mark_of(event_text_);
     checkpoint_.files.log.step = checkpoint_.files.frames.step = reached_;
     checkpoint_.snapshot = nullptr;
+    checkpoint_.control = steps_.control();
     checkpoint_.ends_for = StopReason::none;
     checkpoint_.limits.limits = watch_.records();
     checkpoint_.simulation = simulation.serialise();
@@ -313,6 +322,7 @@ class Import {
   std::int64_t reached_ = 0;
   Gauges gauges_;
   Energies first_;
+  std::optional<Energies> first_of_period_;  // none: no slice
   std::map<std::int64_t, LammpsRow> rows_;
   LammpsRow last_;
   EnergyMark mark_;  // before the states that are not judged yet
@@ -320,6 +330,7 @@ class Import {
   bool told_of_account_ = false, told_of_break_ = false, at_rest_ = true;
   Forces force_;
   std::vector<double> memory_;  // force terms' memory in the last state
+  StateHeader steps_;           // header of the last state: into how many parts steps are divided
   std::vector<TermEvent> events_;  // since the last state that was taken
   std::string log_, event_text_;
   std::unique_ptr<NewFrames> frames_;

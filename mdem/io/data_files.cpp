@@ -20,11 +20,14 @@ const char* added_directory = nullptr;  // there before any static variable
 // Tells how to make a set that is named by its chirality; empty: it is shipped, or the name has no chirality.
 std::string how_to_make(const std::string& name, const std::vector<std::string>& shipped) {
   std::smatch found;
-  if (!std::regex_match(name, found, std::regex("cnt-([0-9]{1,3})-([0-9]{1,3})(-[a-z]*)?"))) return "";
-  const std::string begin = fmt::format("cnt-{}-{}-", found[1].str(), found[2].str());
+  if (!std::regex_match(name, found, std::regex("cnt-([0-9]{1,3}-[0-9]{1,3}(@[0-9]{1,3}-[0-9]{1,3})*)(-[a-z]*)?")))
+    return "";
+  std::string walls = found[1].str();
+  const std::string begin = fmt::format("cnt-{}-", walls);
   for (const std::string& set : shipped)
     if (set.rfind(begin, 0) == 0) return "";
-  return fmt::format("`ropewalk calibrate --chirality {},{}` makes it", found[1].str(), found[2].str());
+  std::replace(walls.begin(), walls.end(), '-', ',');
+  return fmt::format("`ropewalk calibrate --chirality {}` makes it", walls);
 }
 
 std::string instead_of(const std::string& name, const std::string& data) {
@@ -78,7 +81,8 @@ std::string find_parameters(const std::string& name, const std::string& folder, 
   const fs::path beside = fs::path(folder) / name;
   if (fs::is_regular_file(beside, error)) return beside.string();
   const fs::path shipped = fs::path(data) / "parameters";
-  for (const std::string& file : {name + ".toml", name})
+  // A tube alone is that of Tersoff's potential.
+  for (const std::string& file : {name + ".toml", name, name + "-tersoff.toml"})
     if (fs::is_regular_file(shipped / file, error)) return (shipped / file).string();
   const std::string file = name + ".toml";
   throw InputError(place, fmt::format("there is no parameter set \"{}\"", printable(name)),

@@ -17,7 +17,7 @@ struct Equilibrium {
   std::int64_t step = 0;  // step of the row of log.csv with the same state
   double time = 0;        // ps
   Stability stability = Stability::unknown;
-  double growth = std::numeric_limits<double>::quiet_NaN();  // 1/ns, of the fastest motion; NaN: not known
+  double growth = std::numeric_limits<double>::quiet_NaN();  // growth rate of the fastest motion, 1/ns; NaN: not known
   double error = std::numeric_limits<double>::quiet_NaN();   // 1/ns: smaller rates cannot be told from zero
   double force = 0, moment = 0;                              // eV/nm, eV: the largest that is left
   double above = 0;                                          // eV above the minimum, by estimate

@@ -50,6 +50,66 @@ void grade_wall(const ParameterSet& set, Grade& grade) {
                   wall, range.of, range.softest, range.stiffest));
 }
 
+// Where values lie for all tubes of carbon, in whatever potential, or for their ratios to what they must agree
+// with. Wide enough for any tube, and so narrow that ten times the value, a tenth of it, another sign and another
+// unit lie outside.
+struct Range {
+  const char* what;
+  double value, least, most;
+};
+
+void within(const std::vector<Range>& ranges, Grade& grade) {
+  for (const Range& r : ranges)
+    if (!(r.value >= r.least && r.value <= r.most))
+      add(grade, Level::limited,
+          fmt::format("{} is {:.4g}, and {:.4g} to {:.4g} is to be expected: is a number or a unit wrong?", r.what,
+                      r.value, r.least, r.most));
+}
+
+double number_of(const ParameterSet& set, const std::string& key) {
+  const Quantity* q = find_quantity(set, key);
+  return q ? q->value : 0;
+}
+
+// Sum of a quantity over the walls, times a power of the radius.
+double sum_over_walls(const ParameterSet& set, const char* key, int power) {
+  double sum = 0;
+  for (std::size_t k = 0; k < set.walls.size(); ++k)
+    sum += number_of(set, fmt::format("wall.{}.{}", k + 1, key)) * std::pow(set.walls[k].radius, power);
+  return sum;
+}
+
+// Walls that slide along one another have the bending stiffness of N sheets, and a tube of given width collapses or
+// facets by the ratio of that stiffness to its adhesion: both diameters go as sqrt(N).
+void grade_walls(const ParameterSet& set, Grade& grade) {
+  const double diameter = 2 * set.radius, wider = std::sqrt(static_cast<double>(set.walls.size()));
+  if (2 * set.walls.front().radius < slender_diameter)
+    add(grade, Level::limited,
+        fmt::format("its inner wall is {:.2f} nm wide: below {} nm a wall is no thin shell",
+                    2 * set.walls.front().radius, slender_diameter));
+  if (diameter > collapsing_diameter * wider)
+    add(grade, Level::unfit,
+        fmt::format("{:.2f} nm wide: tubes of {} walls wider than {:.2g} nm may collapse by themselves", diameter,
+                    set.walls.size(), collapsing_diameter * wider));
+  else if (diameter > faceting_diameter * wider)
+    add(grade, Level::limited,
+        fmt::format("{:.2f} nm wide: tubes of {} walls wider than {:.2g} nm facet one another in ropes, and rigid circular "
+                    "ones bind too weakly",
+                    diameter, set.walls.size(), faceting_diameter * wider));
+  const double poisson = sum_over_walls(set, "EA", 2) / (2 * sum_over_walls(set, "GJ", 0)) - 1;
+  within({{"Poisson's ratio of the walls, EA r^2/(2 GJ) - 1,", poisson, -0.1, 0.6},
+          {"EI over that of thin shells, EA r^2/2 over all walls,", set.bond.bend * units::eV_in_nN_nm /
+                                                                        (0.5 * sum_over_walls(set, "EA", 2)),
+           0.9, 1.1},
+          {"EA of [held.all] over the sum of the walls", number_of(set, "held.all.EA") / sum_over_walls(set, "EA", 0),
+           0.99, 1.01},
+          {"GJ of [held.all] over the sum of the walls", number_of(set, "held.all.GJ") / sum_over_walls(set, "GJ", 0),
+           0.99, 1.01},
+          {"EA of [held.outer] over that of the outer wall",
+           number_of(set, "held.outer.EA") / number_of(set, fmt::format("wall.{}.EA", set.walls.size())), 0.97, 1.1}},
+         grade);
+}
+
 void grade_width(const ParameterSet& set, Grade& grade) {
   const double diameter = 2 * set.radius;
   const double shell = 2 * set.bond.bend / (set.bond.stretch * set.radius * set.radius);
@@ -92,7 +152,8 @@ void grade_contact(const ParameterSet& set, Grade& grade) {
         "eV/nm, and pair_energy is", grade);
   agree(line_crossed_well(line.density, 0.5 * units::pi).energy, line.cross90_energy,
         "K, s, c, p and q give two crossed tubes", "eV, and cross90_energy is", grade);
-  agree(set.atoms_per_length / (2 * units::pi * set.radius), line.surface_density,
+  const double density = set.walls.empty() ? set.atoms_per_length : set.walls.back().atoms_per_length;
+  agree(density / (2 * units::pi * set.radius), line.surface_density,
         "atoms_per_length and radius give", "atoms per nm^2, and surface_density is", grade);
   const double own = line_fit_error(set), mixed = universal_error(set);
   if (own > known_well)
@@ -111,28 +172,13 @@ void grade_contact(const ParameterSet& set, Grade& grade) {
 
 double value_or_none(const Quantity* q) { return q ? q->value : -1; }
 
-// Where values lie for all tubes of carbon, in whatever potential, or for their ratios to what they must agree
-// with. Wide enough for any tube, and so narrow that ten times the value, a tenth of it, another sign and another
-// unit lie outside.
-struct Range {
-  const char* what;
-  double value, least, most;
-};
-
-void within(const std::vector<Range>& ranges, Grade& grade) {
-  for (const Range& r : ranges)
-    if (!(r.value >= r.least && r.value <= r.most))
-      add(grade, Level::limited,
-          fmt::format("{} is {:.4g}, and {:.4g} to {:.4g} is to be expected: is a number or a unit wrong?", r.what,
-                      r.value, r.least, r.most));
-}
-
 // The shell that EA and EI belong to has GJ too, and with it kGA (G. R. Cowper, J. Appl. Mech. 33, 335 (1966)).
 void grade_shell(const ParameterSet& set, Grade& grade) {
   const BondStiffness& b = set.bond;
   const double r2 = set.radius * set.radius, poisson = b.stretch * r2 / (2 * b.twist) - 1;
-  std::vector<Range> ranges = {{"Poisson's ratio, EA r^2/(2 GJ) - 1,", poisson, -0.1, 0.6}};
-  if (b.shear > 0) {
+  std::vector<Range> ranges;
+  if (set.walls.empty()) ranges.push_back({"Poisson's ratio, EA r^2/(2 GJ) - 1,", poisson, -0.1, 0.6});
+  if (set.walls.empty() && b.shear > 0) {
     const double expected = 2 * (1 + poisson) / (4 + 3 * poisson) * b.twist / r2;
     ranges.push_back({"kGA over that of a thin tube", b.shear / expected, 0.8, 1.25});
   }
@@ -256,7 +302,7 @@ Grade grade_of(const ParameterSet& set) {
     return grade;
   }
   grade_wall(set, grade);
-  grade_width(set, grade);
+  set.walls.empty() ? grade_width(set, grade) : grade_walls(set, grade);
   grade_shell(set, grade);
   grade_limits(set, grade);
   grade_anharmonic(set, grade);
@@ -266,7 +312,12 @@ Grade grade_of(const ParameterSet& set) {
 }
 
 double wall_stiffness(const ParameterSet& set) {
-  return set.bond.stretch * units::eV_in_nN_nm / (2 * units::pi * set.radius);
+  double radius = set.radius;
+  if (!set.walls.empty() && !set.outer_carries) {
+    radius = 0;
+    for (const Wall& wall : set.walls) radius += wall.radius;
+  }
+  return set.bond.stretch * units::eV_in_nN_nm / (2 * units::pi * radius);
 }
 
 // The file format keeps it in the note of K: "fit error 1.4e-03 of the well".

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "io/files.hpp"
@@ -60,6 +61,7 @@ class Reader {
     else
       read_tube(top_.table("tube"));
     read_bond(top_.table("bond"));
+    if (!set_.walls.empty()) read_holding(top_.table("held"));
     const TomlTable contact = top_.table("contact");
     for (const LawNumbers& law : law_numbers())
       if (contact.has(law.name)) set_.laws[law.name] = law.read({contact.table(law.name), set_, number_of_law()});
@@ -110,6 +112,10 @@ class Reader {
         throw t.error("chirality", "is that of a tube, and the set has [filament]", "take one of them away");
       return;
     }
+    if (t.has("walls")) {
+      read_walls(t);
+      return;
+    }
     if (!t.has("chirality"))
       throw t.error("chirality", "is missing",
                     "add chirality = [n, m]; what has no lattice of carbon has [filament] in place of [tube]");
@@ -140,20 +146,91 @@ class Reader {
     }
   }
 
+  void read_walls(const TomlTable& t) {
+    if (t.has("chirality"))
+      throw t.error("walls", "are those of a tube that has meta.chirality too", "take one of them away");
+    for (const std::vector<double>& nm : t.rows("walls", Bounds::range(0, 1000), 2)) {
+      Wall wall;
+      wall.chirality = {static_cast<int>(nm[0]), static_cast<int>(nm[1])};
+      if (wall.chirality.n != nm[0] || wall.chirality.m != nm[1] || !wall.chirality.valid())
+        throw t.error("walls", "are not those of a tube", "write [[n, m], ...], inside first");
+      set_.walls.push_back(wall);
+    }
+    if (set_.walls.size() < 2)
+      throw t.error("walls", "are fewer than two", "write chirality = [n, m] for a tube of one wall");
+    set_.chirality = set_.walls.back().chirality;
+    static const Words<bool> carriers = {{"outer", true}, {"all", false}};
+    set_.outer_carries = t.word("carried_by", carriers);
+  }
+
+  // The walls, which stand inside of one another.
+  void read_each_wall(const TomlTable& t) {
+    const Bounds stiffness = Bounds::positive(1e9);
+    double density = 0, inside = 0;
+    for (std::size_t k = 0; k < set_.walls.size(); ++k) {
+      Wall& wall = set_.walls[k];
+      const TomlTable own = t.table(fmt::format("{}", k + 1));
+      wall.radius = quantity(own, "radius", "nm", Bounds::positive(1e3));
+      check_geometry(own, "radius", wall.radius, tube_radius(wall.chirality), "nm", wall.chirality);
+      wall.atoms_per_length = quantity(own, "atoms_per_length", "1/nm", Bounds::positive());
+      check_geometry(own, "atoms_per_length", wall.atoms_per_length, ropewalk::atoms_per_length(wall.chirality), "1/nm",
+                     wall.chirality);
+      for (const char* key : {"EI", "GJ"}) quantity(own, key, "nN nm^2", stiffness);
+      quantity(own, "EA", "nN", stiffness);
+      if (wall.radius <= inside)
+        throw own.error("radius", fmt::format("is {} nm, and the wall inside has {} nm", wall.radius, inside),
+                        "name the walls from inside to outside");
+      inside = wall.radius;
+      density += wall.atoms_per_length;
+    }
+    const auto agree = [&](const char* key, double said, double of_walls, const char* unit) {
+      if (std::fabs(said / of_walls - 1) > 1e-6)
+        throw top_.table("tube").error(key, fmt::format("is {} {}", said, unit),
+                                       fmt::format("the walls have {:.10g}", of_walls));
+    };
+    agree("contact_radius", set_.radius, inside, "nm");
+    agree("atoms_per_length", set_.atoms_per_length, density, "1/nm");
+  }
+
+  // The tube by both ways of holding it, of which the bond has one.
+  void read_holding(const TomlTable& t) {
+    for (const char* way : {"all", "outer"}) {
+      const TomlTable own = t.table(way);
+      const bool used = set_.outer_carries == (way == std::string("outer"));
+      for (const auto& [key, unit, bond] : {std::tuple{"EA", "nN", set_.bond.stretch},
+                                            std::tuple{"EI", "nN nm^2", set_.bond.bend},
+                                            std::tuple{"GJ", "nN nm^2", set_.bond.twist}}) {
+        const double value = quantity(own, key, unit, Bounds::positive(1e9));
+        if (used && std::fabs(bond / (value * units::nN_nm) - 1) > 1e-6)
+          throw top_.table("meta").error("carried_by", fmt::format("is \"{}\", and bond.{} is not that of [held.{}]", way, key, way),
+                           fmt::format("write bond.{} = {} {}", key, value, unit));
+      }
+    }
+  }
+
   // A wrong unit or chirality changes the value by a factor; relaxation changes the rolled sheet by only 2 %.
-  void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit) const {
+  void check_geometry(const TomlTable& t, const char* key, double value, double rolled, const char* unit,
+                      Chirality of) const {
     if (std::fabs(value / rolled - 1.0) < 0.1) return;
     throw t.error(
         key, fmt::format("is {} {}", value, unit),
-        fmt::format("a ({},{}) tube has about {:.4g} {}", set_.chirality.n, set_.chirality.m, rolled, unit));
+        fmt::format("a ({},{}) tube has about {:.4g} {}", of.n, of.m, rolled, unit));
   }
 
   void read_tube(const TomlTable& t) {
+    if (!set_.walls.empty()) {
+      set_.radius = quantity(t, "contact_radius", "nm", Bounds::positive());
+      set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
+      set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
+      read_each_wall(top_.table("wall"));
+      return;
+    }
     set_.radius = quantity(t, "radius", "nm", Bounds::positive());
-    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality, set_.honeycomb.lattice_constant), "nm");
+    const double a = set_.honeycomb.lattice_constant;
+    check_geometry(t, "radius", set_.radius, tube_radius(set_.chirality, a), "nm", set_.chirality);
     set_.atoms_per_length = quantity(t, "atoms_per_length", "1/nm", Bounds::positive());
-    check_geometry(t, "atoms_per_length", set_.atoms_per_length,
-                   ropewalk::atoms_per_length(set_.chirality, set_.honeycomb.lattice_constant), "1/nm");
+    check_geometry(t, "atoms_per_length", set_.atoms_per_length, ropewalk::atoms_per_length(set_.chirality, a), "1/nm",
+                   set_.chirality);
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 50));
   }
 
@@ -402,8 +479,11 @@ std::string provenance_value(const ParameterSet& set, const std::string& key) {
 
 std::string tube_name(const ParameterSet& set) {
   if (set.filament) return set.name;
-  const std::string nm = fmt::format("({},{})", set.chirality.n, set.chirality.m);
-  return set.honeycomb.carbon() ? nm : nm + " " + set.honeycomb.name;
+  std::string text;
+  for (const Wall& wall : set.walls)
+    text += fmt::format("{}({},{})", text.empty() ? "" : "@", wall.chirality.n, wall.chirality.m);
+  if (text.empty()) text = fmt::format("({},{})", set.chirality.n, set.chirality.m);
+  return set.honeycomb.carbon() ? text : text + " " + set.honeycomb.name;
 }
 
 void refuse_filament(const ParameterSet& set, const std::string& so, const std::string& instead) {
@@ -431,6 +511,11 @@ void check_name_of_honeycomb(const TomlTable& t, const std::string& key, const s
   throw t.error(key, fmt::format("is \"{}\"", printable(name, 40)),
                 name == "C" ? "carbon is built in: leave its table away"
                             : "write up to 12 letters and digits, as \"BN\": sets are named by them");
+}
+
+void refuse_several_walls(const ParameterSet& set, const std::string& so, const std::string& instead) {
+  if (set.walls.empty()) return;
+  throw InputError({set.path, 0, "meta.walls"}, fmt::format("are {}: {}", tube_name(set), so), instead);
 }
 
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key) {
@@ -487,7 +572,15 @@ std::string pull_row_text(const ParameterSet& set) {
 std::string parameters_text(const ParameterSet& set, const std::string& comment) {
   std::string text = comment;
   text += fmt::format("\n[meta]\nformat = \"{}\"\nname = {}\n", parameter_format, toml_string(set.name));
-  if (!set.filament) text += fmt::format("chirality = [{}, {}]\n", set.chirality.n, set.chirality.m);
+  if (!set.walls.empty()) {
+    std::vector<std::string> walls;
+    for (const Wall& wall : set.walls)
+      walls.push_back(fmt::format("[{}, {}]", wall.chirality.n, wall.chirality.m));
+    text += fmt::format("walls = [{}]\ncarried_by = \"{}\"\n", fmt::join(walls, ", "),
+                        set.outer_carries ? "outer" : "all");
+  } else if (!set.filament) {
+    text += fmt::format("chirality = [{}, {}]\n", set.chirality.n, set.chirality.m);
+  }
   text += fmt::format("reference = {}\n", toml_string(set.reference));
   if (!set.doi.empty()) text += fmt::format("doi = {}\n", toml_string(set.doi));
   std::string section;

@@ -26,10 +26,12 @@ const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
 std::vector<std::vector<double>> covariance(const ParameterSet& set, const std::vector<std::string>& keys);
 // An entry of [provenance]; empty if the set has none.
 std::string provenance_value(const ParameterSet& set, const std::string& key);
-// "(10,10)"; "(10,10) BN" of other honeycombs than carbon; the name of the set for a filament
+// "(10,10)", "(5,5)@(10,10)", "(10,10) BN"; the name of the set for a filament
 std::string tube_name(const ParameterSet& set);
 // Throws InputError for a filament: "FILE: filament: has no lattice of atoms: SO; INSTEAD".
 void refuse_filament(const ParameterSet& set, const std::string& so, const std::string& instead);
+// Throws InputError for a tube of several walls: "FILE: meta.walls: are (5,5)@(10,10): SO; INSTEAD".
+void refuse_several_walls(const ParameterSet& set, const std::string& so, const std::string& instead);
 
 // Throws InputError for tubes of another honeycomb than carbon: "FILE: lattice: is of BN, and WHAT".
 void refuse_other_than_carbon(const ParameterSet& set, const std::string& what);

@@ -15,8 +15,8 @@ constexpr double still_there = 0.95;   // relative to the largest value
 constexpr double twisted_from = 0.01;  // nN nm
 constexpr double bent_share = 0.05;    // part of the bending moment: a larger torque of a bent rope is no noise
 constexpr double bent_beside = 0.2;    // torque over the bending moment; and that over tension times radius
-constexpr double drawn_from = 1e-6;    // strain, from the start
-constexpr double drawn_again = 1e-3;   // strain, of a rope that was shorter before
+constexpr double drawn_from = 1e-6;    // strain against the start
+constexpr double drawn_again = 1e-3;   // strain of a rope that was shorter before
 constexpr double stored_from = 1e-3;   // MJ/kg
 constexpr double turned_from = 1;      // degrees
 

@@ -55,7 +55,7 @@ struct RunResults {
   int tubes_broken = 0;
   // GPa, N/tex, strain since the pull began (io/pull.hpp): at the largest stress; where ends are drawn apart.
   double strength = none, strength_N_per_tex = none, strength_strain = none;
-  std::string no_strength;  // the largest stress, and why it is none; empty: it is, or nothing is drawn apart
+  std::string no_strength;  // why the largest stress is no strength; empty: it is one, or nothing is drawn apart
   bool stress_fell = false;
   double stored_at_limit = none;  // MJ/kg: of the last row before the first limit; without one, the largest
   double links_formed = 0, links_broken = 0, bonds_broken = 0;  // counts in the last row

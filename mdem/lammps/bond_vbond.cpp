@@ -1,5 +1,6 @@
 #include "lammps/bond_vbond.hpp"
 
+#include "lammps/fix_nve.hpp"
 #include "lammps/pair_mdem.hpp"
 #include "memory.h"
 #include "neighbor.h"
@@ -64,7 +65,7 @@ void BondVBond::tally(int i, int j, const BondForce& f, const Vector3& separatio
   }
 }
 
-void BondVBond::refuse_slip(int element) {
+void BondVBond::refuse_slip(int element) const {
   refuse_one(lmp,
              "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element) +
                  ": the bond to the next element is twisted by 90 degrees and cannot carry more torque",
@@ -79,7 +80,13 @@ void BondVBond::report(RankEngine& engine) {
     const std::array<double, 6> all = engine.virial(Parts::bonds);
     for (std::size_t k = 0; k < 6; ++k) virial[k] += all[k];
   }
-  if (engine.slipping_element() >= 0) refuse_slip(engine.slipping_element());
+  check_slip(engine);
+}
+
+void BondVBond::check_slip(const RankEngine& engine) const {
+  if (engine.slipping_element() < 0) return;
+  auto* motion = find_fix<FixNve>(lmp);
+  if (!motion || !motion->will_go_back(FixNve::Failure::slip)) refuse_slip(engine.slipping_element());
 }
 
 void BondVBond::apply(int i, int j) {

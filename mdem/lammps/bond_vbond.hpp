@@ -20,12 +20,14 @@ class BondVBond : public LMP::Bond {
   void read_restart(FILE*) override {}
   double single(int type, double rsq, int i, int j, double& fforce) override;
 
+  // Refuses a bond that is about to slip where no rank can go back.
+  void check_slip(const RankEngine& engine) const;
   const BondEnergy& own_energy() const { return sum_; }  // energy of this rank's bonds in the last evaluation
 
  private:
   BondForce evaluate(int i, int j, const Vector3& separation) const;
   void report(RankEngine& engine);
-  [[noreturn]] void refuse_slip(int element);
+  [[noreturn]] void refuse_slip(int element) const;
   void apply(int i, int j);
   void tally(int i, int j, const BondForce& f, const Vector3& separation);
 

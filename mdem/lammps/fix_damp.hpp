@@ -14,7 +14,7 @@ class FixDamp : public LMP::Fix {
   void setup_pre_reverse(int eflag, int vflag) override { pre_reverse(eflag, vflag); }
   void pre_reverse(int eflag, int vflag) override;
 
-  double own_power() const { return power_; }  // eV/ps, of this rank's pairs and bonds in the last evaluation
+  double own_power() const { return power_; }  // power of this rank's pairs and bonds in the last evaluation, eV/ps
   double local() const { return model_->interaction.damping.local; }
 
  private:

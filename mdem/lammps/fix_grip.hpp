@@ -17,6 +17,8 @@ class FixGrip : public LMP::Fix {
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;
   void setup(int vflag) override { post_force(vflag); }
+  // The loads of the present state, for the work of the next kick.
+  void find_loads();
   void post_force(int vflag) override;
 
   // Atoms of the elements that it acts on, on this rank.
@@ -38,18 +40,24 @@ class FixGrip : public LMP::Fix {
     bool operator<(const Place& o) const { return element < o.element; }
   };
   RankEngine* leading_engine() const;
-  void gather();
+  void gather(bool those_of_others);
+  void ask_others();
 
   std::shared_ptr<const LammpsModel> model_;
   RankMessages ranks_;
   std::vector<Place> places_;  // places of all loads, sorted by elements
-  // The scene of this rank's driven elements: its element k is atom atom_[k].
+  // Elements of loads that read others (Load::reads), which every rank knows: numbers in the scene, in rising order,
+  // and their places in the state below. The images of a slice and their originals are so.
+  std::vector<int> known_, known_at_;
+  std::vector<std::vector<int>> reads_;  // elements that each load reads
+  std::vector<double> numbers_;          // message to all ranks
+  // The scene of this rank's driven elements: its element k is atom atom_[k]; -1: another rank has it.
   std::vector<int> atom_;
   Topology topology_;
   LoadsAndConstraints acting_;
   State state_;
   Forces forces_;
-  std::vector<int> own_;                     // all elements of this state
+  std::vector<int> own_;                     // elements of this state that are this rank's
   std::vector<ConstraintImpulse> impulses_;  // impulses of the last kick
   std::vector<PointLoad> loads_;             // loads of the last evaluation
 };

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "domain.h"
 #include "lammps/bond_vbond.hpp"
 #include "lammps/fix_damp.hpp"
 #include "lammps/fix_grip.hpp"
@@ -14,8 +15,6 @@
 #include "neighbor.h"
 #include "output.h"
 #include "scene/lammps_files.hpp"
-#include "sim/dynamics/blow_up.hpp"
-#include "sim/dynamics/verlet.hpp"
 #include "sim/state/motion.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "timer.h"
@@ -66,6 +65,8 @@ FixMotion::FixMotion(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   if (!states || !states->began()) return;  // read_restart tells where the run stands
   const StateHeader& began = *states->began();
   carried_ = began.step;
+  divided_ = static_cast<int>(began.divided);
+  control_ = began.control();
   first_skin_ = began.skin;
   for_records(states->memory(), [&](int element, const double* of, std::size_t count) {
     if (element == the_account) accounts_.insert(accounts_.end(), of, of + count);
@@ -85,6 +86,7 @@ FixMotion::~FixMotion() {
 int FixMotion::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
 
 void FixMotion::init() {
+  looked_ = MPI_Wtime();
   check_atoms(lmp, style);
   check_styles(lmp, *model_);
   orientations(lmp);
@@ -119,6 +121,7 @@ bool FixMotion::only_known_fixes() const {
 // Whether LAMMPS exchanges elements in this step, for whatever reason.
 bool FixMotion::exchanged_now() const {
   const auto now = update->ntimestep;
+  if (may_stop_now()) return true;
   if (output->restart_flag && output->next_restart == now) return true;
   for (int k = 0; k < modify->nfix; ++k)
     if (modify->fix[k]->force_reneighbor && modify->fix[k]->next_reneighbor == now) return true;
@@ -141,7 +144,26 @@ void FixMotion::reach_for(double skin) {
 
 void FixMotion::post_integrate() {
   if (!engine_) return;
-  if (engine_->stale()) next_reneighbor = update->ntimestep;
+  int none = 0;
+  look_at_list(none);
+  hand_out();
+}
+
+void FixMotion::look_at_list(int& signal) {
+  if (engine_->stale(signal)) next_reneighbor = update->ntimestep;
+}
+
+void FixMotion::stop_in_time() {
+  if (!may_stop_now()) return;
+  const double now = MPI_Wtime(), took = now - std::exchange(looked_, now);
+  const double left = timer->get_timeout_remain();  // s; 0: there is no such time
+  int ends = left != 0 && left < 1.5 * took ? 1 : 0;
+  MPI_Bcast(&ends, 1, MPI_INT, 0, world);
+  if (ends) timer->force_timeout();
+}
+
+void FixMotion::hand_out() {
+  if (may_stop_now()) next_reneighbor = update->ntimestep;
   if (exchanged_now()) keep_memory();
   if (!engine_->leads()) return;
   if (exchanged_now())
@@ -152,6 +174,20 @@ void FixMotion::post_integrate() {
 
 void FixMotion::pre_exchange() {
   if (engine_) reach_for(engine_->choose_skin());
+}
+
+// As the loop of LAMMPS does; its order of calls is kept.
+void FixMotion::exchange_elements() {
+  domain->pbc();
+  if (domain->box_change) {
+    domain->reset_box();
+    comm->setup();
+    if (neighbor->style) neighbor->setup_bins();
+  }
+  comm->exchange();
+  comm->borders();
+  neighbor->build(1);
+  modify->post_neighbor();
 }
 
 // Stops the run if an element has been lost. LAMMPS itself counts atoms only when it prints, and a script may tell
@@ -194,13 +230,16 @@ void FixMotion::setup_pre_force(int vflag) {
 
 // Sends the orientations to ghosts. LAMMPS itself does so only when it builds lists.
 void FixMotion::pre_force(int) {
+  if (engine_) engine_->use_moment({time_of_forces(), update->setupflag ? std::nullopt : passes()});
   if (engine_ && neighbor->ago == 0) {
     engine_->share_none();
     if (grip_) engine_->share(grip_->atoms().data(), static_cast<int>(grip_->atoms().size()));
     bring_memory();
   }
-  send_to_ghosts(*comm, this, 0);
+  send_orientations();
 }
+
+void FixMotion::send_orientations() { send_to_ghosts(*comm, this, 0); }
 
 int FixMotion::pack_forward_comm(int count, int* list, double* buffer, int, int*) {
   if (round_ >= 0) {
@@ -359,8 +398,16 @@ double FixMotion::own_kinetic_energy() const {
 }
 
 std::vector<double> FixMotion::energies() const {
+  std::vector<double> all = own_energies();
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+std::vector<double> FixMotion::own_energies() const {
   BondEnergy bonds;
-  if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
+  if (engine_)
+    bonds = engine_->bond_energy();
+  else if (const auto* style = dynamic_cast<const BondVBond*>(force->bond)) bonds = style->own_energy();
   const auto* pair = dynamic_cast<const PairMdem*>(force->pair);
   std::vector<double> own = {
       bonds.stretch,        bonds.shear,   bonds.bend,          bonds.twist,  pair ? pair->own_energy() : 0.0,
@@ -372,7 +419,6 @@ std::vector<double> FixMotion::energies() const {
       own.insert(own.end(), {engine_->term_energy()[k], a.lost, a.drag, a.events, a.begun});
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, own.data(), static_cast<int>(own.size()), MPI_DOUBLE, MPI_SUM, world);
   return own;
 }
 
@@ -387,11 +433,13 @@ namespace {
 struct Account {
   EnergySupply all;
   LMP::bigint carried;
+  int divided;
+  StepControl control;
 };
 }  // namespace
 
 void FixMotion::write_restart(FILE* file) {
-  const Account all = {account_of_all(), carried_};
+  const Account all = {account_of_all(), carried_, divided_, control_};
   // LAMMPS writes memories with the elements. Between runs elements may have gone elsewhere already.
   if (update->whichflag == 1) keep_memory();
   // Events stay here until the next state is written.
@@ -415,6 +463,8 @@ void FixMotion::restart(char* bytes) {
   std::memcpy(&account, bytes, sizeof account);
   account_ = comm->me == 0 ? account.all : EnergySupply();
   carried_ = account.carried;
+  divided_ = account.divided;
+  control_ = account.control;
   double count = 0;
   std::memcpy(&count, bytes + sizeof account, sizeof count);
   std::vector<double> numbers(static_cast<std::size_t>(comm->me == 0 ? count : 0));
@@ -424,275 +474,6 @@ void FixMotion::restart(char* bytes) {
     if (element == the_account) accounts_.insert(accounts_.end(), of, of + length);
     if (element == an_event) untold_.insert(untold_.end(), of, of + length);
   });
-}
-
-// --- dynamics -----------------------------------------------------------------------------------------
-
-int FixNve::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | FINAL_INTEGRATE; }
-
-// Damping acts on half-step velocities, so that the forces at the end of a step do not follow from the state alone.
-// If the forces of the last step are known, from memory or from the data or restart file, they are used. A run in
-// parts then equals an uninterrupted run.
-void FixNve::setup(int) {
-  mark();
-  if (carried_ != update->ntimestep) return;
-  double** last = carried(lmp);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    store(atom->f[i], vector(last[i]));
-    store(atom->torque[i], vector(last[i] + 3));
-  }
-  if (engine_) engine_->use_lammps_forces();
-}
-
-// The kick of translation or rotation. Returns the energy that the local damping has dissipated.
-double FixNve::push(double alpha, double TubeType::*inertia, double dt, double** velocity,
-                    double** force_on) const {
-  double removed = 0;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const double per_force = dt / type_of(*model_, *atom, i).*inertia;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double force = force_on[i][axis], before = velocity[i][axis];
-      const double brake = alpha > 0 ? pfc_local(alpha, force, before) : 0.0;
-      velocity[i][axis] = before + per_force * (force + brake);
-      removed -= 0.5 * dt * brake * (before + velocity[i][axis]);
-    }
-  }
-  return removed;
-}
-
-void FixNve::kick(double dt) {
-  if (engine_ && engine_->leads()) {
-    account_.dissipated += engine_->kick(dt);
-  } else {
-    const double alpha = damp_ ? damp_->local() : 0.0;
-    account_.dissipated += push(alpha, &TubeType::mass, dt, atom->v, atom->f);
-    account_.dissipated += push(alpha, &TubeType::inertia, dt, atom->omega, atom->torque);
-  }
-  if (grip_) account_.work += grip_->constrain(time_, 0.5 * update->dt, dt);
-}
-
-void FixNve::add_work_of_loads(double dt) {
-  if (grip_) account_.work += dt * grip_->own_power();
-}
-
-void FixNve::drift(double dt) {
-  move(dt);
-  time_ += dt;
-  check();
-}
-
-void FixNve::bathe(double dt) {
-  if (!engine_->leads()) engine_->take_own();
-  engine_->bathe(*model_->thermostat, dt, update->ntimestep, time_);
-  if (!engine_->leads()) engine_->give_own();
-  if (grip_) grip_->constrain(time_, 0.0, 0.0);
-}
-
-double FixNve::damped(double dt) const {
-  if (engine_) return engine_->lost() - dt * engine_->damping_power();
-  return damp_ ? -dt * damp_->own_power() : 0.0;
-}
-
-void FixNve::initial_integrate(int) {
-  time_ = model_->time_at(update->ntimestep - 1);
-  begin_step(*this, update->dt, model_->thermostat != nullptr);
-}
-
-namespace {
-
-// The account of energy in the numbers of a row.
-struct Reading {
-  EnergyMark mark;
-  double kinetic = 0, bonds = 0, contact = 0;
-};
-Reading reading_of(const std::vector<double>& row) {
-  Reading r;
-  r.bonds = row[0] + row[1] + row[2] + row[3];
-  r.contact = row[4];
-  r.kinetic = row[5];
-  r.mark = {r.bonds + r.contact + r.kinetic, {row[6], row[7], row[8]}};
-  for (std::size_t k = lammps_row_numbers - 1; k < row.size(); k += lammps_numbers_of_term) r.mark.energy += row[k];
-  return r;
-}
-
-}  // namespace
-
-void FixNve::mark() {
-  if (!engine_ || !model_->judges_account) return;
-  mark_ = reading_of(energies()).mark;
-  marked_at_ = update->ntimestep;
-}
-
-// As a run does at its marks. LAMMPS cannot go back and divide its steps.
-void FixNve::judge() {
-  if (!engine_ || !model_->judges_account) return;
-  const Reading now = reading_of(energies());
-  const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
-  if (!account_closes(mark_, now.mark, now.kinetic, now.bonds, mixed ? now.contact : 0,
-                      static_cast<std::size_t>(model_->topology.elements())))
-    refuse(lmp,
-           "step " + std::to_string(update->ntimestep) + ": the energy balance has not closed since step " +
-               std::to_string(marked_at_) + "; `ropewalk run` would go back and divide its steps of " +
-               std::to_string(update->dt / units::fs) + " fs, which LAMMPS cannot",
-           "take the states before with `ropewalk import` and go on with `ropewalk resume`, or set run.time_step_fs to "
-           "half of that and export again");
-  mark_ = now.mark;
-  marked_at_ = update->ntimestep;
-}
-
-void FixNve::check() const {
-  const MotionBound bound(model_->topology.largest_radius(), update->dt);
-  if (engine_ && bound.holds(engine_->fastest())) return;
-  if (engine_ && engine_->leads()) engine_->give_own();
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (!(vector(atom->v[i]).squaredNorm() < bound.speed2) || !(vector(atom->omega[i]).squaredNorm() < bound.spin2))
-      refuse_one(lmp,
-                 "step " + std::to_string(update->ntimestep) + ", element " + std::to_string(element_of(*atom, i)) +
-                     ": the motion blew up (an element moves a quarter of its radius or turns half a radian in one "
-                     "step)",
-                 "use a smaller time step or a gentler start and load");
-}
-
-void FixNve::final_integrate() {
-  time_ = now();
-  end_step(*this, update->dt);
-  if (update->ntimestep == marked_at_ + account_window) judge();
-  if (output->next != update->ntimestep) return;
-  if (engine_ && engine_->leads()) engine_->give_own();
-  if (output->restart_flag && output->next_restart == update->ntimestep) carry();
-}
-
-void FixNve::post_run() {
-  FixMotion::post_run();
-  if (engine_ && engine_->leads()) engine_->give_own();
-  carry();
-}
-
-void FixNve::carry() {
-  double** last = carried(lmp);
-  for (int i = 0; i < atom->nlocal; ++i) {
-    store(last[i], vector(atom->f[i]));
-    store(last[i] + 3, vector(atom->torque[i]));
-  }
-  carried_ = update->ntimestep;
-}
-
-// --- relaxation: Simulation::relax, one force evaluation per step ---------------------------------------
-
-FixRelax::FixRelax(LMP::LAMMPS* lmp, int count, char** words)
-    : FixMotion(lmp, count, words), fire_(model_->start.time_step) {
-  const std::vector<TubeType>& types = model_->topology.types;
-  const TubeType& lightest =
-      *std::min_element(types.begin(), types.end(), [](const auto& a, const auto& b) { return a.mass < b.mass; });
-  radius_ = lightest.radius;
-  scale2_ = lightest.inertia / lightest.mass;
-  scalar_flag = 1;
-  extscalar = 0;
-  nevery = 1;
-}
-
-int FixRelax::setmask() { return FixMotion::setmask() | INITIAL_INTEGRATE | END_OF_STEP; }
-
-void FixRelax::setup(int) {
-  fire_ = Fire(model_->start.time_step);
-  steps_ = 0;
-  last_ = 0;
-  stop();
-}
-
-void FixRelax::stop() {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    store(atom->v[i], Vector3::Zero());
-    store(atom->omega[i], Vector3::Zero());
-  }
-}
-
-FixRelax::Sums FixRelax::sums() const {
-  std::array<double, 3> own{};
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const Vector3 v = vector(atom->v[i]), w = vector(atom->omega[i]);
-    const Vector3 f = vector(atom->f[i]), m = vector(atom->torque[i]);
-    own[0] += f.dot(v) + m.dot(w);
-    own[1] += v.squaredNorm() + scale2_ * w.squaredNorm();
-    own[2] += f.squaredNorm() + m.squaredNorm() / scale2_;
-  }
-  std::array<double, 3> all{};
-  MPI_Allreduce(own.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, world);
-  return {all[0], all[1], all[2]};
-}
-
-void FixRelax::kick() {
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const TubeType& type = type_of(*model_, *atom, i);
-    add(atom->v[i], fire_.dt / type.mass * vector(atom->f[i]));
-    add(atom->omega[i], fire_.dt / type.inertia * vector(atom->torque[i]));
-  }
-}
-
-void FixRelax::turn_to_force(double mix, const Sums& s) {
-  const double turn = s.force2 > 0 ? mix * std::sqrt(s.velocity2 / s.force2) : 0.0;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    store(atom->v[i], (1 - mix) * vector(atom->v[i]) + turn * vector(atom->f[i]));
-    store(atom->omega[i], (1 - mix) * vector(atom->omega[i]) + turn / scale2_ * vector(atom->torque[i]));
-  }
-}
-
-double FixRelax::fastest() const {
-  double own = 0, all = 0;
-  for (int i = 0; i < atom->nlocal; ++i)
-    own = std::max(own, vector(atom->v[i]).squaredNorm() + scale2_ * vector(atom->omega[i]).squaredNorm());
-  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return std::sqrt(all);
-}
-
-void FixRelax::initial_integrate(int) {
-  const double time = model_->time_at(update->ntimestep - 1);
-  if (sums().power > 0) {
-    fire_.went_down();
-  } else {
-    if (grip_) grip_->constrain(time, -0.25 * last_, 0.0);
-    move(-0.5 * last_);
-    stop();
-    fire_.went_up();
-  }
-  kick();
-  if (grip_) grip_->constrain(time, 0.0, 0.0);
-  turn_to_force(fire_.mix, sums());
-  if (grip_) grip_->constrain(time, 0.0, 0.0);
-  const double speed = fastest();
-  if (!std::isfinite(speed))
-    refuse(lmp, "step " + std::to_string(update->ntimestep) + ": relaxation met a force that is not finite",
-           "start from a state without overlaps");
-  last_ = speed > 0 ? std::min(fire_.dt, Fire::farthest(radius_) / speed) : fire_.dt;
-  if (grip_) grip_->constrain(time, 0.5 * last_, 0.0);
-  move(last_);
-  ++steps_;
-}
-
-double FixRelax::largest_force() {
-  const auto n = static_cast<std::size_t>(atom->nlocal);
-  std::vector<double> values(6 * n);
-  std::vector<double*> linear(n + 1), angular(n + 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    linear[i] = &values[6 * i];
-    angular[i] = &values[6 * i + 3];
-    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
-    store(linear[i], vector(atom->f[i]) / type.mass);
-    store(angular[i], vector(atom->torque[i]) / type.inertia);
-  }
-  if (grip_) grip_->free_parts(now(), linear.data(), angular.data());
-  double own = 0, all = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const TubeType& type = type_of(*model_, *atom, static_cast<int>(i));
-    own = std::max(
-        {own, type.mass * vector(linear[i]).norm(), type.inertia * vector(angular[i]).norm() / type.radius});
-  }
-  MPI_Allreduce(&own, &all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return all;
-}
-
-void FixRelax::end_of_step() {
-  if (steps_ % Fire::check_every == 0 && largest_force() < model_->force_tolerance) timer->force_timeout();
 }
 
 }  // namespace ropewalk::lammps

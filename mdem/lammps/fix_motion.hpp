@@ -1,18 +1,14 @@
-// fix ID all mdem/nve: velocity Verlet of mdem/sim/dynamics/verlet.hpp, for translation and rotation.
-// fix ID all mdem/relax: Simulation::relax, step by step; LAMMPS's minimisers leave orientations as they are.
-//
-// Both send orientations to ghosts before the forces are evaluated, check the set-up, and keep the account of
-// energy: f_ID[1..9] = time, stretch, shear, bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the
-// energy, the losses, events and beginnings of each force term (sim/forces/force_term.hpp, TermAccount).
+// What fix mdem/nve (fix_nve.hpp) and fix mdem/relax (fix_relax.hpp) share. Both send orientations to ghosts before
+// the forces are evaluated, check the set-up, and keep the account of energy: f_ID[1..9] = time, stretch, shear,
+// bend, twist, vdw, kinetic, work, dissipated (ps, eV), behind them the energy, the losses, events and beginnings of
+// each force term (sim/forces/force_term.hpp, TermAccount).
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "lammps/fix_damp.hpp"
 #include "lammps/rank_engine.hpp"
-#include "sim/dynamics/energy_mark.hpp"
-#include "sim/dynamics/fire.hpp"
+#include "sim/dynamics/step_control.hpp"
 
 namespace ropewalk::lammps {
 
@@ -34,6 +30,11 @@ class FixMotion : public LMP::Fix {
     return {sum_over_ranks(lmp, account_.work), sum_over_ranks(lmp, account_.dissipated),
             sum_over_ranks(lmp, account_.heat)};
   }
+  // Into how many parts a step is divided, and for how long.
+  int divided() const { return divided_; }
+  const StepControl& control() const { return control_; }
+  // ps, at which LAMMPS evaluates the next forces.
+  virtual double time_of_forces() const { return now(); }
   void write_restart(FILE* file) override;
   void restart(char* bytes) override;
   int pack_forward_comm(int count, int* list, double* buffer, int, int*) override;
@@ -59,8 +60,27 @@ class FixMotion : public LMP::Fix {
   bool only_known_fixes() const;
   double now() const { return model_->time_at(update->ntimestep); }
   double own_kinetic_energy() const;
-  // The numbers of a row behind the time. All ranks.
+  // The numbers of a row behind the time: this rank's share, and of all ranks.
+  std::vector<double> own_energies() const;
   std::vector<double> energies() const;
+  void forget_row() { row_step_ = -1; }
+  virtual std::optional<double> passes() const { return 0; }  // ps, before the next forces; none: no motion
+
+  // What LAMMPS does between two steps. Whether the engine's list is too old; `signal` becomes the largest of all
+  // ranks.
+  void look_at_list(int& signal);
+  bool may_stop_now() const {
+    return (update->ntimestep - model_->start.step) % lammps_steps_between_stops == 0;
+  }
+  // Ends the run at such a step if the time of -var wall is over before the next one. All ranks.
+  void stop_in_time();
+  bool exchanged_now() const;
+  void hand_out();  // own elements, to LAMMPS's arrays
+  void exchange_elements();
+  void keep_memory();
+  void give_memory(const std::vector<double>& numbers);
+  void reach_for(double skin);
+  void send_orientations();
 
   std::shared_ptr<const LammpsModel> model_;
   FixGrip* grip_ = nullptr;
@@ -68,23 +88,24 @@ class FixMotion : public LMP::Fix {
   RankEngine* engine_ = nullptr;  // none: plain forms
   EnergySupply account_;          // this rank's share
   LMP::bigint carried_ = 0;       // the step whose forces are stored with the elements
+  int divided_ = 1;
+  StepControl control_;
+  std::vector<double> accounts_;  // that the terms begin with
+  std::vector<double> untold_;    // events that no state has told of
 
  private:
   virtual bool engine_may_lead() const { return false; }
-  bool exchanged_now() const;
   void lead_exchanges();
-  void reach_for(double skin);
   void check_elements();
   void check_masses();
   std::vector<double>& memory_of(int i) { return memory_[static_cast<std::size_t>(i)]; }
-  void give_memory(const std::vector<double>& numbers);
-  void keep_memory();
   void bring_memory();
   void find_longest();
 
   State moved_;  // buffer of move()
   std::vector<double> row_;
   LMP::bigint row_step_ = -1;
+  double looked_ = 0;  // s, since the start of the system: when the last such step was made
   double first_skin_ = 0;  // for a run that goes on: the skin of the list (nm; 0: as the engine chooses)
   // Records of force terms, of each own element and each copy; up to date from before an exchange until the list is
   // built. Lists of numbers as those of sim/forces/force_terms.hpp.
@@ -92,65 +113,6 @@ class FixMotion : public LMP::Fix {
   std::vector<std::vector<double>> memory_;
   int longest_ = 0;                            // longest memory of an element of any rank
   int round_ = -1;                             // which message brings them to copies; -1: it brings orientations
-  std::vector<double> accounts_;               // that the terms begin with
-  std::vector<double> untold_;                 // events of before the start
-};
-
-class FixNve : public FixMotion {
- public:
-  FixNve(LMP::LAMMPS* lmp, int count, char** words) : FixMotion(lmp, count, words) {}
-  int setmask() override;
-  void setup(int vflag) override;
-  void initial_integrate(int vflag) override;
-  void final_integrate() override;
-  void post_run() override;
-
-  // The parts of a step, by sim/dynamics/verlet.hpp.
-  EnergySupply& account() { return account_; }
-  void kick(double dt);
-  void add_work_of_loads(double dt);
-  void drift(double dt);
-  void bathe(double dt);
-  double kinetic_energy() const { return own_kinetic_energy(); }
-  double damped(double dt) const;
-
- private:
-  bool engine_may_lead() const override { return only_known_fixes(); }
-  void carry();  // the forces along with the elements, into the next output
-  double push(double alpha, double TubeType::*inertia, double dt, double** velocity, double** force) const;
-  void check() const;
-  void mark();
-  void judge();
-
-  double time_ = 0;  // ps, in the course of a step
-  EnergyMark mark_;
-  LMP::bigint marked_at_ = 0;
-};
-
-class FixRelax : public FixMotion {
- public:
-  FixRelax(LMP::LAMMPS* lmp, int count, char** words);
-  int setmask() override;
-  void setup(int vflag) override;
-  void initial_integrate(int vflag) override;
-  void end_of_step() override;
-  double compute_scalar() override { return largest_force(); }
-
- private:
-  struct Sums {
-    double power = 0, velocity2 = 0, force2 = 0;
-  };
-  Sums sums() const;
-  void stop();
-  void kick();
-  void turn_to_force(double mix, const Sums& s);
-  double fastest() const;
-  double largest_force();
-
-  Fire fire_;
-  double radius_ = 0, scale2_ = 0;
-  long steps_ = 0;
-  double last_ = 0;  // ps, of the last step
 };
 
 }  // namespace ropewalk::lammps

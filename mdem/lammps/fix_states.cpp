@@ -83,12 +83,14 @@ std::string trouble_of(const F& f) {
 
 }  // namespace
 
-FixStates::FixStates(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count, words) {
+FixStates::FixStates(LMP::LAMMPS* lmp, int count, char** words)
+    : Fix(lmp, count, words),
+      model_(loaded(lmp, "fix mdem/states")),
+      slices_(lmp, model_->topology.elements()) {
   const bool starts = count == 7 && std::string(words[5]) == "from";
   if (igroup != 0 || (count != 5 && !starts))
     refuse(lmp, "fix mdem/states takes a number of steps, a file, and the file where the run begins",
            "write: fix states all mdem/states 1000 lammps.states from rope.state");
-  model_ = loaded(lmp, "fix mdem/states");
   const double every = LMP::utils::numeric(FLERR, words[3], false, lmp);
   if (!(every >= 1 && every <= std::numeric_limits<int>::max()) || every != static_cast<int>(every))
     refuse(lmp, std::string("fix mdem/states cannot write every ") + words[3] + " steps",
@@ -98,33 +100,6 @@ FixStates::FixStates(LMP::LAMMPS* lmp, int count, char** words) : Fix(lmp, count
   path_ = words[4];
   if (starts) make_elements(words[6]);
   begin_file(starts ? words[6] : path_);
-}
-
-// --- slices -------------------------------------------------------------------------------------------
-
-LMP::bigint FixStates::slice_begin(int rank) const {
-  return LMP::bigint{model_->topology.elements()} * rank / comm->nprocs;
-}
-
-int FixStates::slice_of(LMP::bigint element) const {
-  return static_cast<int>(((element + 1) * comm->nprocs - 1) / model_->topology.elements());
-}
-
-// Each rank gets its list. Lists arrive behind one another in the order of the ranks that sent them.
-std::vector<double> FixStates::exchange(const std::vector<std::vector<double>>& to) const {
-  std::vector<int> send, receive(to.size()), send_at(to.size()), receive_at(to.size());
-  std::vector<double> all;
-  for (const std::vector<double>& list : to) {
-    send.push_back(static_cast<int>(list.size()));
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  MPI_Alltoall(send.data(), 1, MPI_INT, receive.data(), 1, MPI_INT, world);
-  std::partial_sum(send.begin(), send.end() - 1, send_at.begin() + 1);
-  std::partial_sum(receive.begin(), receive.end() - 1, receive_at.begin() + 1);
-  std::vector<double> out(static_cast<std::size_t>(receive.back() + receive_at.back()));
-  MPI_Alltoallv(all.data(), send.data(), send_at.data(), MPI_DOUBLE, out.data(), receive.data(), receive_at.data(),
-                MPI_DOUBLE, world);
-  return out;
 }
 
 // --- the start ----------------------------------------------------------------------------------------
@@ -148,20 +123,20 @@ void FixStates::make_elements(const std::string& path) {
   widen_box(slice);
   const std::vector<int> owner = owners(slice);
   std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
-  auto element = static_cast<double>(slice_begin(comm->me));
+  auto element = static_cast<double>(slices_.begin(comm->me));
   for (std::size_t k = 0; k < slice.size(); ++k) {
     std::vector<double>& list = to[static_cast<std::size_t>(owner[k])];
     list.push_back(element++);
     list.insert(list.end(), slice[k].begin(), slice[k].end());
   }
-  create(exchange(to));
+  create(slices_.exchange(to));
   share_memory(path, owner);
   if (update->ntimestep != began_.header.step) update->reset_timestep(LMP::bigint{began_.header.step});
 }
 
 std::vector<StateRecord> FixStates::read_slice(const std::string& path) const {
-  const LMP::bigint first = slice_begin(comm->me);
-  std::vector<StateRecord> slice(static_cast<std::size_t>(slice_begin(comm->me + 1) - first));
+  const LMP::bigint first = slices_.begin(comm->me);
+  std::vector<StateRecord> slice(static_cast<std::size_t>(slices_.begin(comm->me + 1) - first));
   const File file(path, O_RDONLY);
   file.read(slice.data(), slice.size() * sizeof(StateRecord), began_.record(first));
   for (std::size_t k = 0; k < slice.size(); ++k) {
@@ -221,19 +196,12 @@ std::vector<double> FixStates::read_share_of_memory(const std::string& path) con
 // Records go to the slices of their elements, and from there to the owners. Events are in the file and stay there.
 void FixStates::share_memory(const std::string& path, const std::vector<int>& owners) {
   if (began_.header.memory == 0) return;
-  const auto sorted = [&](const std::vector<double>& numbers, const auto& rank_of) {
-    std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
-    for_records(numbers, [&](int element, const double* of, std::size_t count) {
-      if (element == an_event) return;
-      std::vector<double>& list = to[static_cast<std::size_t>(element == the_account ? 0 : rank_of(element))];
-      list.insert(list.end(), of, of + count);
-    });
-    return exchange(to);
-  };
-  const std::vector<double> of_slice =
-      sorted(read_share_of_memory(path), [&](int element) { return slice_of(element); });
-  memory_ = sorted(of_slice, [&](int element) {
-    return owners[static_cast<std::size_t>(element - slice_begin(comm->me))];
+  const std::vector<double> of_slice = slices_.bring(read_share_of_memory(path), [&](int element) {
+    if (element == an_event) return -1;
+    return element == the_account ? 0 : slices_.of(element);
+  });
+  memory_ = slices_.bring(of_slice, [&](int element) {
+    return element < 0 ? 0 : owners[static_cast<std::size_t>(element - slices_.begin(comm->me))];
   });
 }
 
@@ -320,14 +288,21 @@ void FixStates::begin_file(const std::string& start) {
       if (start == path_ ? fs::exists(path_) : fs::equivalent(start, path_, none))
         for (const StateInFile& s : find_states(path_, model_->topology.elements()))
           if (s.header.step <= update->ntimestep) {
-            end_ = s.end();
-            written_ = s.header.step;
+            place_ = {s.end(), s.header.step};
           }
-      File(path_, O_RDWR | O_CREAT).cut(end_);
+      File(path_, O_RDWR | O_CREAT).cut(place_.end);
     });
   refuse_together(lmp, trouble);
-  MPI_Bcast(&end_, 1, MPI_INT64_T, 0, world);
-  MPI_Bcast(&written_, 1, MPI_LMP_BIGINT, 0, world);
+  MPI_Bcast(&place_, sizeof place_, MPI_BYTE, 0, world);
+}
+
+void FixStates::go_back_to(const Place& place) {
+  next_reneighbor = (update->ntimestep / nevery + 1) * nevery;
+  if (place.end == place_.end) return;
+  std::string trouble;
+  if (comm->me == 0) trouble = trouble_of([&] { File(path_, O_RDWR).cut(place.end); });
+  refuse_together(lmp, trouble);
+  place_ = place;
 }
 
 void FixStates::init() { next_reneighbor = (update->ntimestep / nevery + 1) * nevery; }
@@ -338,7 +313,7 @@ void FixStates::end_of_step() {
 }
 
 void FixStates::post_run() {
-  if (written_ != update->ntimestep) write();
+  if (place_.written != update->ntimestep) write();
 }
 
 void FixStates::write() {
@@ -346,7 +321,7 @@ void FixStates::write() {
   if (engine && engine->leads()) engine->give_own();
   auto* motion = find_fix<FixMotion>(lmp);
   StateInFile state;
-  state.at = end_;
+  state.at = place_.end;
   state.header.step = update->ntimestep;
   state.header.elements = model_->topology.elements();
   state.header.time = model_->time_at(update->ntimestep);
@@ -356,13 +331,14 @@ void FixStates::write() {
     state.header.work = account.work;
     state.header.dissipated = account.dissipated;
     state.header.heat = account.heat;
+    state.header.set(motion->divided(), motion->control());
   }
   const auto n = static_cast<std::size_t>(atom->nlocal);
   std::vector<std::vector<double>> to(static_cast<std::size_t>(comm->nprocs));
   double** q = orientations(lmp);
   for (std::size_t i = 0; i < n; ++i) {
     const int element = element_of(*atom, static_cast<int>(i));
-    std::vector<double>& list = to[static_cast<std::size_t>(slice_of(element))];
+    std::vector<double>& list = to[static_cast<std::size_t>(slices_.of(element))];
     list.resize(list.size() + sent);
     double* r = &*list.end() - sent;
     *r = element;
@@ -382,21 +358,20 @@ void FixStates::write() {
   std::int64_t up_to_here = 0;
   MPI_Scan(&numbers_here, &up_to_here, 1, MPI_INT64_T, MPI_SUM, world);
   MPI_Allreduce(&numbers_here, &state.header.memory, 1, MPI_INT64_T, MPI_SUM, world);
-  const std::vector<double> mine = exchange(to);
+  const std::vector<double> mine = slices_.exchange(to);
   refuse_together(lmp, trouble_of([&] { write_slice(state, mine, memory, up_to_here - numbers_here); }));
   // The header says that the rest is there.
   std::string trouble;
   if (comm->me == 0)
     trouble = trouble_of([&] { File(path_, O_RDWR).write(&state.header, sizeof state.header, state.at); });
   refuse_together(lmp, trouble);
-  end_ = state.end();
-  written_ = update->ntimestep;
+  place_ = {state.end(), update->ntimestep};
 }
 
 void FixStates::write_slice(const StateInFile& state, const std::vector<double>& records,
                             const std::vector<double>& memory, std::int64_t memory_before) const {
-  const LMP::bigint first = slice_begin(comm->me);
-  std::vector<StateRecord> slice(static_cast<std::size_t>(slice_begin(comm->me + 1) - first));
+  const LMP::bigint first = slices_.begin(comm->me);
+  std::vector<StateRecord> slice(static_cast<std::size_t>(slices_.begin(comm->me + 1) - first));
   for (std::size_t k = 0; k < records.size(); k += sent)
     std::copy_n(&records[k + 1], numbers,
                 slice[static_cast<std::size_t>(records[k]) - static_cast<std::size_t>(first)].data());

@@ -6,7 +6,7 @@
 // LAMMPS goes on from any state to the same bits, on as many ranks: at every state elements are exchanged.
 #pragma once
 
-#include "lammps/shared.hpp"
+#include "lammps/slices.hpp"
 #include "scene/lammps_states.hpp"
 
 namespace ropewalk::lammps {
@@ -25,10 +25,15 @@ class FixStates : public LMP::Fix {
   // too.
   const std::vector<double>& memory() const { return memory_; }
 
+  // The end of the file, and back to it: the states behind it are written again. All ranks.
+  struct Place {
+    std::int64_t end = 0;        // bytes
+    LMP::bigint written = -1;  // step of the last state
+  };
+  Place place() const { return place_; }
+  void go_back_to(const Place& place);
+
  private:
-  LMP::bigint slice_begin(int rank) const;
-  int slice_of(LMP::bigint element) const;
-  std::vector<double> exchange(const std::vector<std::vector<double>>& to) const;
   void make_elements(const std::string& path);
   std::vector<StateRecord> read_slice(const std::string& path) const;
   std::vector<double> read_share_of_memory(const std::string& path) const;
@@ -42,12 +47,12 @@ class FixStates : public LMP::Fix {
                    std::int64_t memory_before) const;
 
   std::shared_ptr<const LammpsModel> model_;
+  Slices slices_;
   std::string path_;
   StateInFile began_;
   bool has_begun_ = false;
   std::vector<double> memory_;
-  std::int64_t end_ = 0;  // end of the last state in the file, bytes
-  LMP::bigint written_ = -1;
+  Place place_;
 };
 
 }  // namespace ropewalk::lammps

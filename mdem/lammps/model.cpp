@@ -24,6 +24,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
   m.topology = empty_topology(scene);
   read_tubes(dir, m.topology);
   set_strands(dir, m.start, m.topology);
+  set_slice(dir, m.start, m.topology);
   m.topology.groups.ends_meet = ends_meet(scene, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);

@@ -19,7 +19,7 @@ class PairMdem : public LMP::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
 
-  // eV, of this rank's pairs in the last evaluation.
+  // Energy of this rank's pairs in the last evaluation, eV.
   double own_energy() const { return engine_ ? engine_->contact_energy() : energy_; }
   RankEngine* engine() const { return engine_.get(); }
 

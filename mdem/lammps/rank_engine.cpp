@@ -10,6 +10,7 @@
 #include "sim/contact/contact_law.hpp"
 #include "sim/contact/line/engine.hpp"
 #include "sim/dynamics/simulation.hpp"
+#include "sim/dynamics/spins.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/state/part_of_scene.hpp"
 #include "sim/threads/for_each.hpp"
@@ -17,14 +18,14 @@
 namespace ropewalk::lammps {
 namespace {
 
-constexpr int numbers_joined = 4;  // numbers
+constexpr int numbers_joined = 5, largest_joined = 2;  // numbers, the first of which are no sums
 
 void join_numbers(void* from, void* to, int* count, MPI_Datatype*) {
   for (int k = 0; k < *count; ++k) {
     const double* a = static_cast<const double*>(from) + numbers_joined * k;
     double* b = static_cast<double*>(to) + numbers_joined * k;
-    b[0] = std::max(a[0], b[0]);
-    for (int m = 1; m < numbers_joined; ++m) b[m] += a[m];
+    for (int m = 0; m < largest_joined; ++m) b[m] = std::max(a[m], b[m]);
+    for (int m = largest_joined; m < numbers_joined; ++m) b[m] += a[m];
   }
 }
 
@@ -56,11 +57,12 @@ AllRanks::~AllRanks() {
 }
 
 void AllRanks::join(double& largest, double (&sums)[3]) const {
-  const double own[numbers_joined] = {largest, sums[0], sums[1], sums[2]};
+  const double own[numbers_joined] = {largest, signal_, sums[0], sums[1], sums[2]};
   double all[numbers_joined];
   MPI_Allreduce(own, all, 1, numbers_, join_, world_);
   largest = all[0];
-  std::copy(all + 1, all + numbers_joined, sums);
+  signal_ = all[1];
+  std::copy(all + largest_joined, all + numbers_joined, sums);
 }
 
 RankEngine::RankEngine(LMP::LAMMPS* lmp, std::shared_ptr<const LammpsModel> model)
@@ -201,19 +203,23 @@ void RankEngine::move(double dt) {
 }
 
 // Copies change as well; their owners send them before they are read.
-void RankEngine::bathe(const Thermostat& bath, double dt, std::int64_t step, double time) {
+void RankEngine::bathe(const Thermostat& bath, double dt, std::int64_t step, int part, double time) {
   state_.step = step;
+  state_.part = part;
   state_.time = time;
   std::vector<double> none;
   bath.apply(topology_, dt, state_, none);
 }
 
-bool RankEngine::stale() {
+bool RankEngine::stale(int& signal) {
   ++steps_;
   Change all;  // summed in the order of the elements, whatever the threads
   for (const Change& c : changes_) all = both(all, c);
   if (engine_.terms().have_news()) all.moved = std::numeric_limits<double>::infinity();
-  return list_.stale(all);
+  if (ranks_) ranks_->send_along(signal);
+  const bool stale = list_.stale(all);
+  if (ranks_) signal = ranks_->signal();
+  return stale;
 }
 
 // The mean of the best skins of all ranks, weighted by their elements.
@@ -247,8 +253,8 @@ std::vector<TermEvent> RankEngine::take_events() {
   return events;
 }
 
-void RankEngine::build() {
-  const bool goes_on = list_.builds() > 0;
+void RankEngine::build(bool begins) {
+  const bool goes_on = !begins && list_.builds() > 0;
   const LMP::Atom& atom = *lmp_->atom;
   const int all = atom.nlocal + atom.nghost;
   std::vector<std::pair<int, int>> order;  // element of the scene, atom
@@ -321,12 +327,9 @@ void RankEngine::compute(bool energies) {
   const LMP::Atom& atom = *lmp_->atom;
   quaternions_ = orientations(lmp_);
   for (const Stretch& s : ghosts_) take(s);
-  // At the start of a run no time has passed; in a relaxation none does.
-  std::optional<double> passed;
-  if (!lmp_->update->setupflag) passed = model_->relax ? 0.0 : lmp_->update->dt;
   state_.step = lmp_->update->ntimestep;
-  state_.time = model_->time_at(lmp_->update->ntimestep);
-  evaluate(state_, {Parts::all, energies, passed}, forces_);
+  state_.time = moment_.time;
+  evaluate(state_, {Parts::all, energies, moment_.passed}, forces_);
   contact_energy_known_ = energies;
   // At the start of a run LAMMPS writes forces before the first step.
   const bool all = !leads_ || lmp_->update->setupflag;
@@ -337,6 +340,45 @@ void RankEngine::compute(bool energies) {
     }
   all_forces_there_ = leads_ && all;
   shared_forces_there_ = leads_ && !all;
+}
+
+void RankEngine::begin_spins() {
+  spins_.known.assign(state_.size(), 0);
+  spins_.place.assign(state_.size(), -1);
+  spins_.atom.assign(state_.size(), -1);
+  for (const auto* stretches : {&own_, &ghosts_})
+    for (const Stretch& s : *stretches)
+      for (int k = 0; k < s.count; ++k) {
+        spins_.place[static_cast<std::size_t>(s.atom + k)] = s.element + k;
+        spins_.atom[static_cast<std::size_t>(s.element + k)] = s.atom + k;
+      }
+  spins_.fresh = middles_of_tubes(model_->topology, topology_);
+  for (const int place : spins_.fresh) spins_.known[static_cast<std::size_t>(place)] = 1;
+}
+
+std::vector<int> RankEngine::follow_spins(const std::vector<int>& copies) {
+  double** q = orientations(lmp_);
+  for (const int i : copies) {
+    const auto place = static_cast<std::size_t>(spins_.place[static_cast<std::size_t>(i)]);
+    state_.orientation.set(place, quaternion(q[i]));
+    spins_.known[place] = 1;
+  }
+  std::vector<int> atoms;
+  const std::vector<int> followed = ropewalk::follow_spins(topology_, spins_.known, state_);
+  for (const auto* places : {&std::as_const(spins_.fresh), &followed})
+    for (const int place : *places) {
+      const int i = spins_.atom[static_cast<std::size_t>(place)];
+      const Quaternion turned = state_.orientation[static_cast<std::size_t>(place)];
+      q[i][0] = turned.w(), q[i][1] = turned.x(), q[i][2] = turned.y(), q[i][3] = turned.z();
+      atoms.push_back(i);
+    }
+  spins_.fresh.clear();
+  return atoms;
+}
+
+void RankEngine::end_spins() {
+  take_spin_velocities_away(topology_, state_);
+  spins_ = {};
 }
 
 BondEnergy RankEngine::bond_energy() const {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@
 
 namespace ropewalk::lammps {
 
-// Joins what the ranks know of their elements, by one message.
+// Joins what the ranks know of their elements, by one message. A signal rides along: the largest of all ranks.
 class AllRanks : public AllProcesses {
  public:
   explicit AllRanks(MPI_Comm world);
@@ -28,9 +29,12 @@ class AllRanks : public AllProcesses {
   AllRanks(const AllRanks&) = delete;
   AllRanks& operator=(const AllRanks&) = delete;
   void join(double& largest, double (&sums)[3]) const override;
+  void send_along(int signal) { signal_ = signal; }
+  int signal() const { return static_cast<int>(signal_); }
 
  private:
   MPI_Comm world_;
+  mutable double signal_ = 0;
   MPI_Datatype numbers_;
   MPI_Op join_;
 };
@@ -46,8 +50,8 @@ class RankEngine {
   // in it take out, eV.
   double kick(double dt);
   void move(double dt);
-  // The bath acts on the velocities of own elements during dt (ps), in the middle of this step.
-  void bathe(const Thermostat& bath, double dt, std::int64_t step, double time);
+  // The bath acts on the velocities of own elements during dt (ps), in the middle of this part of this step.
+  void bathe(const Thermostat& bath, double dt, std::int64_t step, int part, double time);
   const Fastest& fastest() const { return fastest_; }  // in the last move
   double kinetic_energy() const { return ropewalk::kinetic_energy(topology_, state_); }
   // Position, velocity, spin and orientation of own elements from LAMMPS's arrays.
@@ -63,16 +67,29 @@ class RankEngine {
   // After an exchange: these atoms are shared; ghosts among them do not count.
   void share_none();
   void share(const int* atoms, int count);
-  // Whether, after a move, elements must be exchanged and the list rebuilt. All ranks.
-  bool stale();
+  // Whether, after a move, elements must be exchanged and the list rebuilt. `signal` becomes the largest of all ranks.
+  // All ranks.
+  bool stale(int& signal);
   // The skin of the next list, nm. All ranks, before ghosts are chosen.
   double choose_skin();
   double skin() const { return list_.skin; }
   void use_skin(double skin) { list_.skin = skin; }  // for the first list
-  // After an exchange. All ranks.
-  void build();
+  // After an exchange. All ranks. `begins`: force terms begin with the next memory, their accounts too.
+  void build(bool begins = false);
+  // The next forces are those of this time (ps), at the end of a part of a step that lasts `passed` (ps).
+  struct Moment {
+    double time = 0;
+    std::optional<double> passed;  // none: no part of the motion
+  };
+  void use_moment(const Moment& moment) { moment_ = moment; }
   // Adds all forces and torques of the model to LAMMPS's. Energies of contact are summed only if wanted.
   void compute(bool energies);
+
+  // Spins of own elements (sim/dynamics/spins.hpp), in rounds: with the atoms of copies whose orientation is final,
+  // returns own atoms whose orientation has become so, in LAMMPS's arrays too. The first round has none.
+  void begin_spins();
+  std::vector<int> follow_spins(const std::vector<int>& copies);
+  void end_spins();
 
   // Memories of all force terms, as lists of numbers (sim/forces/force_terms.hpp): this rank's accounts, and the
   // records of its own elements.
@@ -88,7 +105,7 @@ class RankEngine {
   double damping_power() const { return forces_.damping_power; }                  // eV/ps
   const std::vector<double>& term_energy() const { return forces_.term_energy; }  // energy of each force term
   std::vector<TermAccount> term_accounts() const { return engine_.terms().accounts(); }  // this rank's share
-  double lost() const { return forces_.lost; }  // eV, by force terms whose memory has moved on
+  double lost() const { return forces_.lost; }  // energy lost by force terms whose memory has moved on, eV
   int slipping_element() const;                 // number in the scene; -1: none
   // xx, yy, zz, xy, xz, yz of separation times force, without damping.
   std::array<double, 6> virial(Parts parts);
@@ -130,10 +147,17 @@ class RankEngine {
   bool leads_ = false;
   bool shared_forces_there_ = false, all_forces_there_ = false;  // in LAMMPS's arrays, not yet taken from there
   std::vector<Change> changes_;                                  // change of each of moved_
-  std::vector<Fastest> fastest_of_;                              // likewise, in the last move
+  std::vector<Fastest> fastest_of_;                              // fastest element of each of moved_ in the last move
   Fastest fastest_;
   NeighbourList list_;
-  long steps_ = 0;  // since the list was built
+  long steps_ = 0;  // steps since the list was built
+  Moment moment_;
+  struct Spins {
+    std::vector<char> known;
+    std::vector<int> place, atom;  // place of each atom, and atom of each place
+    std::vector<int> fresh;        // places that have become known
+  };
+  Spins spins_;
   ForceEngine engine_;
   Forces forces_, spare_;
   bool contact_energy_known_ = false;

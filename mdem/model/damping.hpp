@@ -64,7 +64,7 @@ struct BondDamping {
     return {rate * (1 - std::cos(q)), rate * (1 - std::cos(q) + 0.25 * mass * a * a / inertia * (1 + std::cos(q))),
             0.5 * rate * a * std::sin(q) * std::sqrt(mass / inertia)};
   }
-  // 1/ps, of the strongest damped motion of such a chain: opposite motions of neighbours, or all turning alike
+  // Rate of the strongest damped motion of such a chain, 1/ps: opposite motions of neighbours, or all turning alike
   // against their lever arms.
   double largest_rate(double a, double mass, double inertia) const {
     double largest = 0;

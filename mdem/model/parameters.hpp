@@ -3,6 +3,12 @@
 //
 //   [meta]      format, name, chirality = [n, m], reference, doi
 //   [tube]      radius (nm), atoms_per_length (1/nm), element_length (nm, default discretisation)
+//               A tube of several walls has meta.walls = [[n, m], ...], inside first, in place of meta.chirality, and
+//               meta.carried_by = "outer" | "all": the walls that carry stretch and torsion, "outer" where the walls
+//               inside slide, "all" where all are gripped or linked. Its [tube] has contact_radius (nm, of the outer
+//               wall) in place of radius, and atoms_per_length of all walls. [wall.1], [wall.2], ...: radius (nm),
+//               atoms_per_length (1/nm), EA (nN), EI, GJ (nN nm^2) of each wall; [held.all], [held.outer]: EA, EI, GJ
+//               of the tube by what carries it. [bond] has those of carried_by.
 //   [lattice]   optional, of what is no carbon: name, species = ["B", "N"] of the two sublattices, bond_length (nm, of
 //               the flat sheet), weight_1, weight_2 (u), and the Lennard-Jones laws between the atoms of two tubes:
 //               epsilon_11, epsilon_12, epsilon_22 (eV), sigma_11, sigma_12, sigma_22 (nm)
@@ -10,27 +16,22 @@
 //               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u:
 //               atomic mass constant), element_length (nm)
 //   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
-//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp,
-//   and
+//   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp, and
 //               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
-//   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers]
-//   }
+//   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers] }
 //               (nN), of a tube that is pulled and not twisted, at equal steps of strain from max_strain to end;
 //               end: largest strain that the atoms bear and that their potential describes; optional: start, the
 //               max_strain, and edge_force (nN), the force of EA and [bond.anharmonic] there, both of the time when
 //               the pull was made. Where they are missing they are what the set has now.
 //   [contact.NAME]    present: the set has the contact law NAME, with the numbers that the law's reader names:
 //               io/laws/paper.cpp, io/laws/line.cpp
-//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV), sublattice_turn
-//   (rad),
-//               sublattice_rise and sublattice_lift (nm): how far the second sublattice has moved against the first,
-//               around, along and off the axis
+//   [atomistic] optional: natural_twist (rad/nm), coupling (nN nm), poisson, energy_per_atom (eV),
+//               sublattice_turn (rad), sublattice_rise and sublattice_lift (nm): how far the second sublattice has
+//               moved against the first, around, along and off the axis
 //   [validity]  kink_curvature (1/nm), twist_collapse (r tau), stretch (strain): limits of the model; optional:
-//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 %
-//               off
+//               endless_collapse (r tau), linear_curvature, linear_twist, linear_stretch: where a stiffness is 1 % off
 //   [provenance] optional strings: what the set was made from and by
-//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of
-//   the
+//   [[correlation]]  optional, any number: of = ["bond.EA", ...] and matrix = [[1, ...], ...], the correlations of the
 //               standard errors of these quantities; quantities in none of them are independent
 //
 // Every number is an inline table { value, unit, standard_error, origin, doi, note }. The unit must be the one
@@ -92,16 +93,25 @@ struct Validity {
   }
 };
 
+// One of the walls of a tube.
+struct Wall {
+  Chirality chirality;
+  double radius = 0;            // nm
+  double atoms_per_length = 0;  // 1/nm
+};
+
 struct ParameterSet {
   std::string name;
   std::string reference;
   std::string doi;
   bool filament = false;          // has [filament]: no lattice, and none of the two numbers that are of a lattice
-  Honeycomb honeycomb;            // sheet that its wall is rolled from
-  Chirality chirality;            // (0,0), which is no tube, for a filament
+  Honeycomb honeycomb;            // sheet that its walls are rolled from
+  Chirality chirality;            // of the outer wall; (0,0), which is no tube, for a filament
+  std::vector<Wall> walls;        // of a tube of several walls, inside first; empty for one wall and for a filament
+  bool outer_carries = false;     // several walls: the outer one alone carries stretch and torsion
   double radius = 0;              // nm: of the wall of a tube, its contact radius too; contact_radius of a filament
   double atoms_per_length = 0;    // 1/nm; 0 for a filament
-  double mass_per_length = 0;     // eV ps^2/nm^3, of a filament
+  double mass_per_length = 0;     // mass per length of a filament, eV ps^2/nm^3
   double element_length = 0;    // nm
   BondStiffness bond;           // eV/nm, eV nm; harmonic
   std::optional<Anharmonic> anharmonic;
@@ -146,7 +156,13 @@ struct ParameterSet {
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,
   // m (r^2/2 + length^2/12), is 0.83 of it at length = 2 r. Published choice; no gyroscopic term. About the axis of
   // a solid filament it is twice the true one: its torsional waves are slower by a factor 1.4, its statics the same.
-  double element_inertia(double length) const { return element_mass(length) * radius * radius; }
+  // Of several walls: the sum.
+  double element_inertia(double length) const {
+    if (walls.empty()) return element_mass(length) * radius * radius;
+    double sum = 0;
+    for (const Wall& wall : walls) sum += wall.atoms_per_length * wall.radius * wall.radius;
+    return element_mass(length) * sum / atoms_per_length;
+  }
 };
 
 }  // namespace ropewalk

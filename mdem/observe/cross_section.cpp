@@ -141,7 +141,7 @@ Pierced pierced_at(const Topology& topology, const State& state, int section) {
   return out;
 }
 
-// nm, of the tubes in a section. `of` has tubes where `topology` has strands.
+// Radii of the tubes in a section, nm. `of` has tubes where `topology` has strands.
 std::vector<double> radii_at(const Topology& of, const Topology& topology, int section) {
   std::vector<double> radii;
   for (int t = 0; t < topology.tubes(); ++t)

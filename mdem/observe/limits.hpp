@@ -30,7 +30,7 @@
 //           where the rope is warm
 //   energy_drift    energy that the account of energy misses, over all energy converted since the start:
 //           energy_drift() of observe/observables.hpp. With steps that the program chooses it stays below 0.02,
-//           cold and at 300 K. The step control (run/step_control.hpp) goes back where 0.03 are lost within a
+//           cold and at 300 K. The step control (sim/dynamics/step_control.hpp) goes back where 0.03 are lost within a
 //           window; this limit sees what smaller losses add up to. Judged from the end of the first window on,
 //           where a row of the log is written
 //
@@ -104,7 +104,7 @@ struct Watched {
   std::vector<double> rest;  // nm: distance of parallel tubes of the types i, j at i * types + j; empty: no contact
   // The pressure on every tube of a state, eV/nm^3; none: not watched.
   std::function<std::vector<double>(const State&)> pressures = {};
-  double twist_energy = 0;      // eV, of the tubes under the whole moment; 0: a shock is not watched
+  double twist_energy = 0;      // twist energy of the tubes under the whole moment, eV; 0: a shock is not watched
   std::vector<Held> held = {};  // of each element of the scene; empty: all are free
 };
 

@@ -60,7 +60,7 @@ bool knows_slip(const Topology& topology, const LoadingReference& reference) {
   return topology.tubes() < 2 || !reference.radius.empty();
 }
 
-// nm, from the centre of an end to that of its innermost elements: they are held as one.
+// Distance from the centre of an end to that of its innermost elements, nm: they are held as one.
 double within(const Topology& topology, const std::vector<int>& end) {
   std::set<int> tubes;
   for (const int e : end) tubes.insert(topology.tube_of(e));

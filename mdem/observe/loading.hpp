@@ -20,9 +20,9 @@ struct LoadingReference {
   std::vector<std::pair<int, int>> neighbours;  // strands, of equal length
   std::vector<double>
       offset;  // nm: element by element along each pair, the displacement of the second one against the first
-  std::vector<double> radius;             // nm, of each tube from the axis of the rope; empty: no common length
+  std::vector<double> radius;             // distance of each tube from the axis, nm; empty: no common length
   std::vector<int> core;                  // the internal strands nearest to the axis
-  std::vector<double> cells;              // nm^2, of the cross-section, by the type of a tube: packing_cells()
+  std::vector<double> cells;              // area in the cross-section by the type of a tube, nm^2: packing_cells()
   std::shared_ptr<const ContactLaw> law;  // null: no contact
 
   bool knows_pressures() const { return law && !cells.empty() && cells.front() > 0; }
@@ -37,7 +37,7 @@ LoadingReference of_parts(LoadingReference reference, const Topology& whole, con
 struct Loading {
   double ends_apart = 0;     // nm, between the centres of the ends; of a slice: its period
   double strain = 0;         // relative change of that distance
-  double least_tension = 0;  // eV/nm, of a tube, mean over its middle third
+  double least_tension = 0;  // least tension of a tube, mean over its middle third, eV/nm
   double most_tension = 0;   // eV/nm, likewise
   double curvature = 0;      // 1/nm, the largest
   double slip = 0;           // nm, the largest displacement of a tube along its neighbour since the start
@@ -45,7 +45,7 @@ struct Loading {
 };
 Loading loading(const Topology& topology, const State& state, const LoadingReference& reference);
 
-// nm along z, of a slice whose images stand one period from their elements.
+// Period along z of a slice whose images stand one period from their elements, nm.
 double slice_length(const Topology& topology, const State& state);
 
 // The load on one tube.

@@ -11,7 +11,7 @@ namespace {
 struct Element {
   int tube;
   Vector3 place, axis;
-  double half;  // nm, of its length
+  double half;  // half of its length, nm
 
   Element(const Topology& topology, const State& state, int element, int of)
       : tube(of),

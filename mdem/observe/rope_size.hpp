@@ -13,8 +13,8 @@ namespace ropewalk {
 // line are no part of it. A slice counts as one period.
 struct RopeSize {
   double mass = 0;             // eV ps^2/nm^2
-  double mass_per_length = 0;  // eV ps^2/nm^3, of all strands, where tubes are: NaN without tubes
-  double area = 0;             // nm^2, of the cross-section: the cells of its strands; NaN without a spacing
+  double mass_per_length = 0;  // mass per length of all strands, where tubes are, eV ps^2/nm^3; NaN without tubes
+  double area = 0;             // area of the cross-section, the cells of its strands, nm^2; NaN without a spacing
 };
 
 // nm^2, by the type of a tube: its cell in a hexagonal packing of tubes like it. `spacing` (nm) is that of tubes of

@@ -28,7 +28,7 @@ namespace ropewalk {
 struct Demands {
   double curvature = 0, twist = 0;  // 1/nm, rad/nm
   double strain = 0, pressed = 0;  // strain of the bond drawn out farthest, and of the one pressed most
-  double pressure = 0;             // eV/nm^3, on the innermost tube
+  double pressure = 0;             // pressure on the innermost tube, eV/nm^3
 };
 
 class DemandsAhead {

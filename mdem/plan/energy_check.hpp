@@ -11,8 +11,8 @@
 namespace ropewalk {
 
 struct EnergyCheck {
-  double by_forces = 0, by_energy = 0;  // eV, for a motion of 1 nm
-  double size = 0;                      // eV, of the elements' parts without their signs
+  double by_forces = 0, by_energy = 0;  // energy for a motion of 1 nm, eV
+  double size = 0;                      // sum of the elements' parts without their signs, eV
   // Relative to that size.
   double error() const;
 };

@@ -12,8 +12,8 @@ struct SceneFeatures {
   double length = 0;                // nm, the longest free length of a tube
   bool sudden = false;              // a force or a moment acts at once
   double strain = 0;                // largest expected strain of a tube
-  double pressure = 0;              // eV/nm^3, on the innermost tube
-  double turn = 0;                  // rad/nm, by which loads and motions turn the rope as a whole from its start
+  double pressure = 0;              // pressure on the innermost tube, eV/nm^3
+  double turn = 0;                  // turn of the rope as a whole by loads and motions, from its start, rad/nm
   Schedule course;                  // schedule of the load or motion that takes longest to become whole
   double turned = 0, turning = 0;   // rad and rad/ps, prescribed to an end against the other
   // Whether both ends of some tube have a prescribed rotation, or a prescribed distance.

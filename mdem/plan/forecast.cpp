@@ -92,7 +92,7 @@ constexpr double latest_break = 1.25;
 // What a scene does to one limit.
 struct Ahead {
   double start = 0, largest = 0;
-  double passes = 0;  // ps, from when on it is beyond
+  double passes = 0;  // when it passes, ps
 };
 
 // `end`: ps, of the run, which loads may outlast.

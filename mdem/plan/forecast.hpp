@@ -42,8 +42,8 @@ double expected_shock(const Scene& scene, const Prepared& prepared);
 // is the same. Runs of 19 tubes show 0.2 of it.
 struct QuasiStatic {
   bool slice = false;
-  double travel = 0;  // ps, from end to end of the untwisted rope
-  double time = 0;    // ps, of the turn
+  double travel = 0;  // travel of sound from end to end of the untwisted rope, ps
+  double time = 0;    // time of the turn, ps
   double drag = 0;    // of a bath at rest on the turning rope, over the mean torque: what the driven end bears more
   double error = 0;   // half the difference of the torques at both ends, over the mean torque of the turn
 };

@@ -18,7 +18,7 @@
 namespace ropewalk {
 
 struct RestTheory {
-  double compact = 0, open = 0;  // rad/nm, of the moment that the scene ends with
+  double compact = 0, open = 0;  // twist under the moment that the scene ends with, rad/nm
 };
 // Throws InputError where the scene is no rope whose ends a moment turns and nothing else holds.
 RestTheory rest_theory(const Scene& scene, const Prepared& prepared);

@@ -26,7 +26,7 @@ class RopeSection {
   RopeSection() = default;
   explicit RopeSection(const Prepared& prepared);
 
-  double radius() const { return std::sqrt(most_); }  // nm, of the outermost tube
+  double radius() const { return std::sqrt(most_); }  // distance of the outermost tube from the axis, nm
   // rad/nm: the first twist without a force on the way from `from`, where no tube is strained.
   double winding_under(double moment, const BondStiffness& bond, bool relaxes_spins, Tubes tubes,
                        double from = 0) const;

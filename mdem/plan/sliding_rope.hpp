@@ -38,7 +38,7 @@ struct SlidingRope {
   double mass = 0;    // m of one tube, eV ps^2/nm^3
   double slip = 0;    // C of one tube, eV ps/nm
 
-  // eV, of each tube: where growth begins.
+  // Moment of each tube where growth begins, eV.
   double static_moment() const;
   // 1/ps: the rate of the fastest growing motion under this moment on each tube (eV) and the winding f; 0: none
   // grows.
@@ -56,7 +56,7 @@ struct SlidingRope {
 struct HelixTheory {
   SlidingRope rope;
   double tubes_in_unit = 1;       // the moment of the scene over that of one tube
-  double static_moment = 0;       // eV, in the reading of the scene: ends that are free, or held on the axis
+  double static_moment = 0;       // moment in the reading of the scene, eV: ends that are free, or held on the axis
   double glued_over_sliding = 1;  // stiffness of a rope of glued tubes over that of all tubes: 1 + EA <rho^2>/2 EI
   bool grows = false;             // whether rates and times below are known
   double rate = 0, hold = 0;      // load of one tube: its rate, eV/ps, and how long it is held, ps

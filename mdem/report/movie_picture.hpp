@@ -11,7 +11,7 @@ namespace ropewalk {
 struct MovieStage {
   RopeCamera camera;
   double tube_radius = 0;     // nm
-  double low = 0, high = 0;   // nm, of all pictures, along camera.up
+  double low = 0, high = 0;   // lowest and highest place of all pictures along camera.up, nm
   int width = 0, height = 0;  // pixels, even
 };
 // The stage that holds all views. The camera is theirs, for a picture of this width.

@@ -27,7 +27,7 @@ struct ReportSection {
 // The load on the tubes of a rope in one frame.
 struct ReportLoading {
   double time_ps = 0;
-  std::vector<double> radius;                   // nm, of each tube from the axis at the start
+  std::vector<double> radius;                   // distance of each tube from the axis at the start, nm
   std::vector<double> pressure_GPa;             // of each tube; empty: there is no contact
   std::vector<std::vector<double>> tension_nN;  // along each tube
 };

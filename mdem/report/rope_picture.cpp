@@ -173,7 +173,7 @@ class DepthBuffer {
 
   double size_of(const Segment& s) const { return sizes_[static_cast<std::size_t>(s.size)]; }
 
-  std::vector<double> sizes_;  // half the strokes behind tubes, nm
+  std::vector<double> sizes_;  // half widths of the strokes that are drawn behind tubes, nm
   double radius_;              // the largest
   double x0_ = 0, y0_ = 0, cell_ = 1;
   int columns_ = 0, rows_ = 0;
@@ -247,7 +247,7 @@ using Paths = std::map<Key, std::string>;
 struct Painter {
   const RopeCamera& camera;
   const std::vector<double>& sizes;  // nm
-  double radius;                     // nm, of the thickest tube of all views
+  double radius;                     // radius of the thickest tube of all views, nm
   double top;                        // nm: upper edge
   double tolerance;                  // hundredths of a nanometre
 
@@ -417,8 +417,16 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
   RopeCamera used = camera;
   if (!has_colours(view)) used.least = used.most = 0;
   const std::vector<double> sizes = sizes_of(view, radius);
-  // Draws ever more coarsely until the text is small enough.
+  // Draws ever more coarsely until the text is small enough. The text shrinks at most in proportion to the segments of
+  // one colour, so details that are too fine by this measure are passed over. The first guess, half a byte for each
+  // segment, allows for hidden ones.
+  std::size_t points = 0;
+  for (const auto& tube : view.tubes) points += tube.size();
+  double least_bytes = 0.5 * static_cast<double>(points);
   for (const Detail& detail : details) {
+    const auto segments = static_cast<double>(detail.stride * detail.block);
+    const bool coarsest = &detail == std::end(details) - 1;
+    if (least_bytes / segments > static_cast<double>(max_bytes) && !coarsest) continue;
     if (detail.stride != stride) {
       stride = detail.stride;
       tubes = seen_tubes(view, sizes, camera, stride);
@@ -430,6 +438,7 @@ std::string rope_body(const RopeView& view, const RopeCamera& camera, double rad
     for (const SeenTube& tube : tubes) painter.append(tube, paths);
     text = paint(paths, link_paths(view, painter, *buffer), name, sizes, radius, used);
     if (text.size() < max_bytes - 1000) break;
+    least_bytes = std::max(least_bytes, static_cast<double>(text.size()) * segments);
   }
   return text;
 }

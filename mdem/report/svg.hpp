@@ -100,8 +100,8 @@ struct RopeView {
   std::vector<std::vector<Vector3>> tubes;  // nm
   RopeColours coloured_by = {};
   std::vector<std::vector<double>> colour = {};    // quantity of each element, in its unit; none: shaded by depth alone
-  std::vector<double> radii = {};                  // nm, of the tubes; none: all are of the one radius
-  std::vector<std::array<Vector3, 2>> links = {};  // nm, on the axes of the two tubes; drawn in red
+  std::vector<double> radii = {};                  // radii of the tubes, nm; none: all are of the one radius
+  std::vector<std::array<Vector3, 2>> links = {};  // points on the axes of two tubes, nm; drawn in red
 };
 
 // Direction and scale of a view. Several views with one camera are comparable.

@@ -16,7 +16,7 @@ inline ElementColours element_colours(const Topology& topology, const Interactio
   return element_colours(topology, interaction, state, topology);
 }
 
-// eV, of each element: half of the energy of each of its contacts.
+// Half of the energy of each contact, for each element, eV.
 std::vector<double> contact_energies(const Topology& topology, const Interaction& interaction, const State& state);
 
 }  // namespace ropewalk

@@ -27,7 +27,7 @@ StopReason DynamicsLoop::go() {
 DynamicsLoop::Stretch DynamicsLoop::next_stretch() const {
   const RunSchedule& s = run_.schedule;
   Stretch t;
-  t.closely = !s.looks_rarely() || run_.moving.control.looks_closely(run_.moving.simulation);
+  t.closely = !s.looks_rarely() || run_.moving.looks_closely();
   t.count = s.steps_to_next(run_.step(), t.closely, seconds_of_a_step_);
   t.step = run_.step() + t.count;
   t.last = t.step == s.scene_end();
@@ -63,7 +63,7 @@ StopReason DynamicsLoop::end_of(const Stretch& t) {
   if (t.framed) run_.write_frame();
   if (stop == StopReason::refine) return stop;  // without a mark: a resumed run has to come to it again
   if (t.marked) {
-    run_.moving.control.lengthen(run_.moving.simulation);
+    run_.moving.lengthen_steps();
     run_.rollback.take_snapshot();
   }
   if (stop == StopReason::none && t.logged && !ends && is_decided()) stop = StopReason::complete;

@@ -23,7 +23,7 @@ bool is_break(const TermEvent& event);
 // The bonds of tubes that broke; none where there is no file. Throws InputError where a line is not right.
 std::vector<TubeBreak> tube_breaks(const std::string& path);
 
-// nm, of the links and tubes that broke; none where there is no file. Throws InputError where a line is not right.
+// Heights of the links and tubes that broke, nm; none where there is no file. Throws InputError where a line is wrong.
 std::vector<double> heights_of_breaks(const std::string& path);
 
 // What the file of a run tells of its links and tubes; nothing where there is no file. Throws InputError where it

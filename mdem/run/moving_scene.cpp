@@ -4,17 +4,21 @@
 
 #include "model/error.hpp"
 #include "run/colours.hpp"
+#include "run/period_energies.hpp"
 #include "scene/scene_place.hpp"
 #include "sim/dynamics/end_drives.hpp"
 
 namespace ropewalk {
 
 std::optional<Energies> energies_of_period(const Simulation& simulation) {
-  const Topology& topology = simulation.topology();
+  return energies_of_period(simulation.topology(), simulation.tubes_now(), simulation.interaction(),
+                            simulation.state(), simulation.forces().energy.terms);
+}
+
+std::optional<Energies> energies_of_period(const Topology& topology, const Topology& now,
+                                           const Interaction& interaction, const State& s, double terms) {
   if (topology.groups.images == 0) return std::nullopt;
-  const State& s = simulation.state();
-  const Topology now = simulation.tubes_now();
-  const std::vector<double> contacts = contact_energies(topology, simulation.interaction(), s);
+  const std::vector<double> contacts = contact_energies(topology, interaction, s);
   Energies out;
   int own = 0;
   for (int t = 0; t < now.tubes(); ++t) {
@@ -30,7 +34,7 @@ std::optional<Energies> energies_of_period(const Simulation& simulation) {
       out.stretch += bond.stretch, out.shear += bond.shear, out.bend += bond.bend, out.twist += bond.twist;
     }
   }
-  out.terms = simulation.forces().energy.terms * own / topology.elements();
+  out.terms = terms * own / topology.elements();
   return out;
 }
 

@@ -5,7 +5,7 @@
 
 #include "io/limits_file.hpp"
 #include "run/run_directory.hpp"
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 
 namespace ropewalk {
 
@@ -27,6 +27,8 @@ struct MovingScene {
   bool relaxes() const { return scene.run.mode == RunOptions::Mode::relax; }
   EnergyAccount account() const { return account_of(simulation, first, first_energy); }
   EnergyParts energies() const;
+  bool looks_closely() const { return control.looks_closely(simulation.divided(), simulation.step_count()); }
+  void lengthen_steps() { simulation.divide_steps(control.lengthen(simulation.divided(), simulation.step_count())); }
   // All observables. Forces at the ends are means since the last row.
   LogRow row();
 

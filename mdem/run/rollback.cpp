@@ -21,7 +21,7 @@ bool Rollback::roll_back(const std::string& why, bool looked_closely) {
   const RunCheckpoint& c = *checkpoints_.snapshot();
   simulation.restore(c.simulation);
   if (looked_closely)
-    moving_.control.shorten(divided, simulation);
+    simulation.divide_steps(moving_.control.shorten(divided, simulation.step_count()));
   else
     moving_.control.close_until = step;
   limits_.roll_back_to(c.limits, simulation.step_count());

@@ -1,5 +1,5 @@
 // Rollback: restores the last good snapshot of a run after a blow-up or an energy error. Steps are shorter from
-// there on (run/step_control.hpp).
+// there on (sim/dynamics/step_control.hpp).
 #pragma once
 
 #include <string>

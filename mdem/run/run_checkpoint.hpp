@@ -11,7 +11,7 @@
 #include "io/limits_file.hpp"
 #include "run/limit_watch.hpp"
 #include "run/run_directory.hpp"
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "run/stop_reason.hpp"
 
 namespace ropewalk {

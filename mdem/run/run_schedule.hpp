@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "run/step_control.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "scene/prepare.hpp"
 
 namespace ropewalk {
@@ -39,7 +39,7 @@ class RunSchedule {
   // Steps until something is written or checked, or a request to stop has waited for `patience`.
   std::int64_t steps_to_next(std::int64_t step, bool closely, double seconds_of_a_step) const;
 
-  static constexpr double patience = 0.5;  // s, of a request to stop a run
+  static constexpr double patience = 0.5;  // how long a request to stop a run waits, s
 
  private:
   static constexpr std::int64_t pause_every = 16;

@@ -50,7 +50,7 @@ void Run::tell_notes() const {
     parts_.listener.tell_note("the scene was changed, and what it expects by [[expect]] is not judged");
 }
 
-// Under which `resume` goes on.
+// The device that moves the elements, for the manifest and for `resume`; empty: there is none.
 std::string Run::device_name() const { return parts_.moving.simulation.device() ? parts_.settings.device : ""; }
 
 void Run::begin_files() {

@@ -28,7 +28,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double enough = 0.2;  // s, of each thing that is timed
+constexpr double enough = 0.2;  // time spent on each thing that is timed, s
 constexpr long min_steps = 12, max_steps = 2000;
 constexpr double usual_frames = 40, usual_rows = 400;
 constexpr double frames_in_report = 6;  // frames in a report

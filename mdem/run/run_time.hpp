@@ -9,7 +9,7 @@ struct RunTime {
   double elements = 0;
   double steps = 0;     // 0 for a relaxation that did not come to rest during the timing
   double each = 0;      // s per step, mean over the run
-  double at_start = 0;  // s per step, of the first steps
+  double at_start = 0;  // cost of the first steps, s per step
   double outputs = 0;   // s: start-up, log, frames, checkpoint, report
   bool relaxes = false;
   double total() const { return steps * each + outputs; }

@@ -22,8 +22,8 @@ namespace ropewalk {
 double contact_viscosity(double per_length, double element_length, double radius);
 // The mean over the sets of a scene, in whatever order it lists them.
 double contact_viscosity(double per_length, double element_length, const std::vector<ParameterSet>& sets);
-// eV ps/nm^3, of a scene that gives none, and by definition that of the published set with 20 eV ps/nm^2 for a pair
-// of elements.
+// Viscosity of a scene that gives none, eV ps/nm^3: by definition that of the published set with 20 eV ps/nm^2 for a pair of
+// elements.
 inline constexpr double default_viscosity = 27;
 
 // Lengths in nm. The reach of the viscosity must be set where there is one.

@@ -138,11 +138,8 @@ bool Drive::holds_elements() const {
 const std::vector<DriveKind>& drive_kinds() { return kinds_of_drives(); }
 
 bool add_drive_kind(DriveKind kind) {
-  register_own_part(std::any_of(kinds_of_drives().begin(), kinds_of_drives().end(),
-                                [&](const DriveKind& other) { return other.table().name == kind.table().name; }),
-                    "drive", kind.table().name);
+  add_own_part(kinds_of_drives(), kind, "drive", [](const DriveKind& k) { return k.table().name; });
   if (auto term = term_kind_of(kind)) add_term_kind(*std::move(term));
-  kinds_of_drives().push_back(std::move(kind));
   return true;
 }
 

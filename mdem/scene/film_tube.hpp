@@ -9,8 +9,8 @@
 namespace ropewalk {
 
 struct FilmTube {
-  double x = 0, y = 0, z = 0;  // nm, of its middle
-  double angle = 0;            // rad, of its projection on the plane of the film, from the x axis
+  double x = 0, y = 0, z = 0;  // its middle, nm
+  double angle = 0;            // angle of its projection on the plane of the film to the x axis, rad
   double tilt = 0;             // rad, out of this plane
 
   Vector3 middle() const { return {x, y, z}; }

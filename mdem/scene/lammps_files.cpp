@@ -27,7 +27,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char *start_format = "ropewalk-lammps-2", *sums_key = "sums",
-                     *came_broken_key = "tubes_came_broken";
+                     *came_broken_key = "tubes_came_broken", *images_key = "images",
+                     *period_key = "period_nm";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
@@ -43,6 +44,8 @@ void visit_start(S&& s, const Visit& v) {
     s.strand_begin);
   v({"strand_holes_nm", "nm", "between the tubes of a strand at the start: their sum, of the strand with most"},
     s.strand_holes);
+  v({images_key, "", "elements at each end of a strand that are images, in a slice; else 0"}, s.images);
+  v({period_key, "nm", "period of a slice at the start; else 0"}, s.period);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
   v({came_broken_key, "", "whether tubes were broken in the state that the scene began with, and no others break"},
@@ -117,6 +120,13 @@ void refuse_what_lammps_lacks(const Scene& scene) {
   Drive::NotForLammps lacking;
   for (const auto& drive : scene.drives)
     if (lacking.key.empty()) lacking = drive->not_for_lammps();
+  if (lacking.key.empty() && scene.has_ends(Drive::Ends::endless))
+    for (const char* name : {"friction", "links", "failure"})
+      for (const auto& drive : scene.drives)
+        if (lacking.key.empty() && drive->table().name == name)
+          lacking = {name,
+                     "images of a slice remember what their originals do, which other ranks have; a rope of ten "
+                     "periods between grips, whose middle is as a slice, takes ten times as long a step"};
   if (lacking.key.empty() && scene.run.stepping.runge_kutta)
     lacking = {"run.integrator", "it evaluates forces once in a step"};
   if (lacking.key.empty() && scene.run.solver != RunOptions::Solver::fire)
@@ -141,8 +151,9 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
-      const bool newer = key.name == std::string(sums_key) || key.name == std::string(came_broken_key);
-      if (newer && !json.contains(key.name)) return;  // version 0.3.0 wrote none
+      // Version 0.3.0 wrote none of these.
+      for (const char* newer : {sums_key, came_broken_key, images_key, period_key})
+        if (key.name == std::string(newer) && !json.contains(key.name)) return;
       const Json& found = json.at(key.name);
       using Value = std::decay_t<decltype(value)>;
       if (std::is_integral_v<Value> && !std::is_same_v<Value, bool> && !found.is_number_integer())
@@ -153,7 +164,7 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     throw InputError({path, 0, ""}, "is damaged", export_again);
   }
   for (const double value : {start.time, start.time_step, start.work, start.dissipated, start.heat,
-                             start.strand_holes, start.viscosity_inner, start.viscosity_outer})
+                             start.strand_holes, start.period, start.viscosity_inner, start.viscosity_outer})
     if (!std::isfinite(value)) throw InputError({path, 0, ""}, "holds a number that is not finite", export_again);
   for (const std::string& name : start.parameters)
     if (has_control_character(name) || name.find('/') != std::string::npos)
@@ -201,6 +212,14 @@ void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology&
                      export_again);
   topology.groups.strand_begin = std::move(begin);
   topology.groups.strand_holes = start.strand_holes;
+}
+
+void set_slice(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology) {
+  const int of_strand = topology.elements() / topology.strands();
+  if (start.images < 0 || 3 * start.images > of_strand || !(start.period >= 0) || (start.images > 0 && start.period == 0))
+    throw InputError({dir.start(), 0, images_key}, "does not fit the tubes of this export", export_again);
+  topology.groups.images = start.images;
+  topology.groups.period = start.period;
 }
 
 namespace {
@@ -357,7 +376,7 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
       values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
-      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // not of version 0.3.0
+      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // files of version 0.3.0 do not have it
     }
     for (double* value : values) {
       if (!take(line, *value))

@@ -29,9 +29,11 @@ struct LammpsStart {
   std::uint64_t lineage = 0;                        // Scene::lineage
   std::vector<int> strand_begin;                    // the first tube of each strand; empty: each tube is one
   double strand_holes = 0;                          // TubeGroups::strand_holes
+  int images = 0;                                   // TubeGroups::images
+  double period = 0;                                // nm, TubeGroups::period
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
-  std::vector<std::string> parameters;              // files, of each tube type
+  std::vector<std::string> parameters;              // a file for each tube type
   std::map<std::string, std::string> sums;          // sum of each LAMMPS file, by name; empty: an older export
 };
 
@@ -66,6 +68,12 @@ std::string tubes_csv(const Topology& topology);
 void read_tubes(const LammpsDirectory& dir, Topology& topology);
 // Sets the strands of these tubes. Throws InputError where they do not fit the tubes.
 void set_strands(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology);
+// Sets the images of a slice. Throws likewise.
+void set_slice(const LammpsDirectory& dir, const LammpsStart& start, Topology& topology);
+
+// At such steps since the export elements are exchanged and lists are built in any case. A job stops there if its time
+// is over before the next such step, so that the one that goes on has the same bits.
+inline constexpr int lammps_steps_between_stops = 512;
 
 // The facts that the input script needs.
 struct LammpsScript {
@@ -90,7 +98,7 @@ struct LammpsRow {
   double step = 0, time = 0;
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0, kinetic = 0;
   double work = 0, dissipated = 0, heat = 0;
-  std::vector<double> terms;          // eV, of each force term
+  std::vector<double> terms;          // energy of each force term, eV
   std::vector<TermAccount> accounts;  // likewise
 };
 inline constexpr int lammps_row_numbers = 10;     // without the step and the terms

@@ -67,7 +67,9 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.mark != state_mark) fail("does not begin as a state does");
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
-    if (h.step < 0 || h.step > largest_step) fail(fmt::format("{} is no step", h.step));
+    for (const std::int64_t step : {h.step, h.kept_until, h.keep})
+      if (step < 0 || step > largest_step) fail(fmt::format("{} is no step", step));
+    if (h.divided < 1 || h.divided > StepControl::most) fail(fmt::format("a step in {} parts", h.divided));
     for (const double value : {h.time, h.work, h.dissipated, h.heat, h.skin})
       if (!(std::fabs(value) <= largest_number)) fail("holds a number that is not finite");
     if (s.end() > bytes) break;

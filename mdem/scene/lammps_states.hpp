@@ -1,5 +1,5 @@
 // The binary files of states that `ropewalk export` and `lmp-ropewalk` exchange: rope.state, where LAMMPS begins,
-// and lammps.states, what it writes. A state is a header of 72 bytes and a record of 152 bytes for each element, in
+// and lammps.states, what it writes. A state is a header of 96 bytes and a record of 152 bytes for each element, in
 // the order of the scene, then the memories of the force terms (ForceTerms::memory()), if any; all numbers
 // little-endian. Every process so knows where an element's record is, and many
 // of them read or write one file at once.
@@ -12,23 +12,31 @@
 #include <vector>
 
 #include "io/outputs.hpp"
+#include "sim/dynamics/step_control.hpp"
 #include "sim/state/state.hpp"
 
 namespace ropewalk {
 
 // Written last: a state that a kill has cut off has zeros here.
-inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '2'};
+inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '3'};
 
 struct StateHeader {
   std::array<char, 8> mark = state_mark;
   std::int64_t step = 0, elements = 0;
   double time = 0;                  // ps
   double work = 0, dissipated = 0;  // eV
-  double heat = 0;                  // eV, from the thermostat
-  double skin = 0;                  // nm, of the neighbour list; 0: there was none
+  double heat = 0;                  // heat from the thermostat, eV
+  double skin = 0;                  // skin of the neighbour list, nm; 0: there was no list
   std::int64_t memory = 0;          // numbers behind the records, of the force terms
+  // Into how many parts steps are divided, and StepControl's numbers.
+  std::int64_t divided = 1, kept_until = 0, keep = StepControl::least_keep;
+
+  void set(int parts, const StepControl& control) {
+    divided = parts, kept_until = control.kept_until, keep = control.keep;
+  }
+  StepControl control() const { return {kept_until, keep, 0}; }
 };
-static_assert(sizeof(StateHeader) == 72, "this is the format of the file");
+static_assert(sizeof(StateHeader) == 96, "this is the format of the file");
 
 // One element of a state: position, orientation, velocity, angular velocity, force and torque, as
 // lammps_state_columns() lists their components.
@@ -73,6 +81,8 @@ class LammpsStates {
   bool next(State& state, Vec3Array& force, Vec3Array& torque);
   // The memories of the force terms in the last state that was read.
   const std::vector<double>& memory() const { return memory_; }
+  // The header of the last state that was read.
+  const StateHeader& header() const { return all_[next_ - 1].header; }
 
  private:
   std::string path_;

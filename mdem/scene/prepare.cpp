@@ -154,7 +154,7 @@ struct Cooling {
   double held(double coupling) const { return bath_held(p.limit, coupling, of_terms); }
   // PFC's local damping takes a part of the heat in every swing of every mode.
   double left(double time) const { return scene.damping.local > 0 ? 0.0 : heat_left(p.limit, time, of_terms); }
-  // ps, of the heat; infinite without damping.
+  // Half-life of the heat, ps; infinite without damping.
   double half_life() const {
     if (scene.damping.local > 0) return 0;
     if (p.limit.damping_rate + of_terms <= 0) return std::numeric_limits<double>::infinity();

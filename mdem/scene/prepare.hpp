@@ -16,7 +16,7 @@ struct Prepared {
   State state;
   Interaction interaction;
   LoadsAndConstraints loads;
-  double spacing = 0;  // nm, of the untwisted rope; 0 where there is none
+  double spacing = 0;  // spacing in the untwisted rope, nm; 0: there is no rope
   TimeStepLimit limit;
   double time_step = 0;  // ps
   Stepping stepping;

@@ -27,12 +27,12 @@ namespace ropewalk {
 inline constexpr const char* scene_format = "ropewalk-scene-1";
 
 struct StartOptions {
-  double temperature = 0;  // K, of the initial velocities
+  double temperature = 0;  // temperature of the initial velocities, K
   bool may_cool = false;   // damping may take that heat away
   std::uint64_t seed = 1;
   std::uint64_t stream = 0;
-  double turn = 0;     // rad/nm, by which straight tubes are wound about their axis at first
-  double wave = 0;     // nm, by which straight tubes are bent sideways at first
+  double turn = 0;     // winding of straight tubes about their axis at first, rad/nm
+  double wave = 0;     // amplitude by which straight tubes are bent sideways at first, nm
   int half_waves = 1;  // along them
 };
 
@@ -45,7 +45,7 @@ struct ContactOptions {
   bool legacy_torque = false;
   double exclude_along_tube = 0;  // nm; 0: least_exclusion()
   double skin = 0;                // nm; 0: chosen by the program
-  double cutoff = 0;              // nm, of axes (`line`) or element centres (`paper`); 0: the set's
+  double cutoff = 0;              // cutoff between axes (`line`) or element centres (`paper`), nm; 0: the set's
   int nodes = 0;                  // `line`: per element; 0: as line_nodes chooses
   // Pairs in single precision or all in double; the former by default where nothing is relaxed to tight tolerances.
   std::optional<Interaction::Precision> precision;

@@ -44,7 +44,7 @@ double free_length(const Scene& scene, const Topology& topology, int tube) {
 
 namespace {
 
-// nm, of the longest tube of a type, which collapses first; 0: endless.
+// Length of the longest tube of a type, which collapses first, nm; 0: endless.
 double collapsing_length(const Scene& scene, const Topology& topology, std::size_t type) {
   double most = 0;
   for (int t = 0; !scene.has_ends(Drive::Ends::endless) && t < topology.tubes(); ++t)

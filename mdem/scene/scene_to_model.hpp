@@ -57,7 +57,7 @@ void add_end_contacts(const Scene& scene, const Topology& topology, Interaction&
 // exist.
 void add_terms(const Scene& scene, const Topology& topology, const State& start, Interaction& interaction);
 
-// ps, from when on no drive changes anything.
+// When the last drive ends to change anything, ps.
 double protocol_time(const Scene& scene);
 
 // Throws InputError for loads on elements that do not exist.

@@ -28,7 +28,7 @@ class Source {
 
   // The spacing of neighbouring parallel tubes, nm; 0: where two of them bind best.
   virtual double typed_spacing() const { return 0; }
-  // nm, by which strands may slide along one another in a slice (TubeGroups::images).
+  // How far strands may slide along one another in a slice (TubeGroups::images), nm.
   virtual double slides() const { return 0; }
   // The sides (nm) in x and y of a box centred on the origin, in which the tubes are laid at random; zeros: there
   // is none.

@@ -9,7 +9,7 @@ struct Scene;
 
 inline constexpr double graphite_gap = 0.335;  // nm, between the walls of tubes for which there is no law
 
-double largest_radius(const Scene& scene);      // nm, of the tube types
+double largest_radius(const Scene& scene);      // largest radius of the tube types, nm
 double own_element_length(const Scene& scene);  // nm, that of the sets, the mean of several
 
 // The distances of two parallel and of two crossed tubes (nm) at which their energy is lowest; without a law, that

@@ -413,7 +413,7 @@ class StateReader {
   double element_length_ = topology_.types.front().element_length;
   std::vector<Row> rows_;
   std::size_t columns_here_ = 0;
-  bool stated_ = false;     // the length, by the file
+  bool stated_ = false;     // the file states the length
   std::string stated_sum_;  // empty: the file has none
   StateSum sum_;
   std::optional<InputError> far_bond_;  // the first

@@ -12,7 +12,7 @@ struct StopRule {
   When when = When::above;
   std::string column;  // column of the log
   double value = 0;    // above, below: in the column's unit; steady: the largest change; growth: the relative error
-  double over = 20;    // ps, of the last rows that steady and growth look at
+  double over = 20;    // span of the last rows that steady and growth look at, ps
   double from = 0;     // ps, before which the rule does not look
   std::string limit;   // a key of [limits]; empty: any of them
   RopeShape shape = RopeShape::helix;

@@ -55,7 +55,7 @@ TEST_P(LineFitAt, IsTheIntegral) {
   FitOptions options;
   options.starts = 3;
   const LineFit f = fit_line({}, shell(ri), shell(rj), options);
-  // (4,4), at 0.27 nm, and thinner: the cutoff's kinks lie in the tail.
+  // For (4,4), with a radius of 0.27 nm, and thinner tubes the kinks of the cutoff lie in the tail of the law.
   expect_near_integral(f, ri + rj < 0.67 ? 2.5e-3 : 2e-3);
   EXPECT_EQ(f.density.contact, ri + rj);
   for (const double e : f.fit.standard_error) EXPECT_GT(e, 0);
@@ -147,7 +147,7 @@ TEST(UniversalFit, HoldsBetweenItsRadii) {
     EXPECT_LT(std::fabs(p.depth_error), 5e-3) << p.r_i << " " << p.r_j;
   }
   for (const auto& [ri, rj] : {std::pair{0.34, 0.34}, {0.6, 0.6}, {0.6, 0.8}, {1.2, 1.2}, {0.34, 1.4}}) {
-    const LineTargets targets(PairIntegral({}, shell(ri), shell(rj)), ri + rj, line_gaps({}));
+    const LineTargets targets(WallsIntegral({}, shell(ri), shell(rj)), ri + rj, line_gaps({}));
     const LineDensity d = u.law.density(ri, density(), rj, density());
     EXPECT_LT(targets.error(d), 4e-3) << ri << " " << rj;
     expect_sound(d);

@@ -288,7 +288,7 @@ TEST_F(Limits, ARefinedRunResumesBitForBit) {
   EXPECT_EQ(log_of("e.fine").back()["work_eV"], whole.back()["work_eV"]);
 }
 
-// A stopped run may be refined afterwards; one whose elements are as short as the model allows goes on with a word.
+// A stopped run may be refined afterwards; one whose elements are as short as the model allows goes on, and says so.
 TEST_F(Limits, AStoppedRunMayBeRefinedAndOnlyOnce) {
   ASSERT_EQ(run("run s.toml --out d --quiet --on-limit stop").code, 5);
   ASSERT_EQ(run("resume d --quiet --on-limit refine").code, 0) << slurp(dir / "stderr.txt");

@@ -152,10 +152,10 @@ TEST_F(LammpsErrors, ExportAndImportRefuse) {
   };
   expect("export nowhere.toml --lammps out", "cannot be opened");
   expect("import nowhere", "was not made by `ropewalk export`");
-  spit(dir / "geometric.toml",
+  spit(dir / "rotations.toml",
        "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = 7\nlength_nm = 13.56\n"
-       "[twist]\nmoment_nN_nm = 20\nrate_nN_nm_per_ps = 30\ngeometric_only = true\n");
-  expect("export geometric.toml --lammps out", "twist.geometric_only: is not for LAMMPS");
+       "[run]\nduration_ps = 1\nintegrator = \"rk4\"\n");
+  expect("export rotations.toml --lammps out", "run.integrator: is not for LAMMPS");
   EXPECT_FALSE(fs::exists(dir / "out"));
   scene_with_everything();
   expect("export scene.toml --lammps out", "is not empty");

@@ -338,7 +338,7 @@ TEST(ListSkin, IsNeverUsedUpUnseen) {
   for (int k = 0; k < 3000; ++k) {
     s.step(false);
     const Change now = s.list().change(s.state(), 0, n);
-    // By the twist that fits now, not that of the last look.
+    // `now` is found with the twist that fits best now, displacement() with that of the last check.
     ASSERT_LE(now.moved, s.list().displacement() + 1e-4) << k;
     if (s.list().displacement() > now.moved + 1.5e-4) ++unseen;
   }

@@ -1,6 +1,8 @@
 """Programs as functions: run, resume, sweep, gather, validate, and how their ends are told."""
 from __future__ import annotations
 
+import ast
+import json
 import math
 import os
 import pathlib
@@ -14,6 +16,53 @@ import numpy as np
 from support import ROPE, FolderTest, signals_of_a_terminal
 
 import ropewalk
+
+
+def described_options(*program: str) -> dict[str, dict[str, str]]:
+    """Of each verb of a program: its options, with their defaults. "": options without a verb."""
+    found = json.loads(subprocess.run([ropewalk.programs.find_program(), *program, "describe", "json"], check=True,
+                                      capture_output=True, text=True).stdout)
+    return {verb.get("name", ""): {name: option["default"] for option in verb["options"] for name in option["names"]}
+            for verb in [*found["verbs"], {"options": found["options"]}]}
+
+
+class OptionsTest(unittest.TestCase):
+    """The signatures are written by hand, for type checkers and editors: they may not differ from the programs' tables of options."""
+
+    def test_options_and_defaults_are_those_of_the_programs(self):
+        own, validate = described_options(), described_options("validate")
+        tables = {"calibrate": described_options("calibrate")[""], "validate run": validate["run"],
+                  "parametrize": validate["parametrize"]}
+        options, defaults = 0, 0
+        for function in ast.parse(pathlib.Path(ropewalk.__path__[0], "programs.py").read_text()).body:
+            if not isinstance(function, ast.FunctionDef) or function.name.startswith("_"):
+                continue
+            arguments = function.args
+            default_of = {a.arg: d.value for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults)
+                          if isinstance(d, ast.Constant)}
+            words = [node.value for node in ast.walk(function)
+                     if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+            verb = "validate run" if function.name == "validate" else function.name
+            known = tables[verb] if verb in tables else own.get(verb, {})
+            with self.subTest(function.name):
+                for word in words:
+                    if word.startswith("--"):
+                        self.assertIn(word.split("=")[0], known)
+                for call in ast.walk(function):
+                    if not (isinstance(call, ast.Call) and getattr(call.func, "id", "") == "_options"):
+                        continue
+                    for keyword in call.keywords:
+                        if keyword.arg is None:
+                            continue
+                        option = "--" + keyword.arg.replace("_", "-")
+                        self.assertIn(option, known)
+                        options += 1
+                        default = default_of.get(getattr(keyword.value, "id", ""))
+                        if default is not None and default is not False:
+                            self.assertEqual(str(default), known[option], option)
+                            defaults += 1
+        self.assertGreater(options, 50)
+        self.assertGreater(defaults, 8)
 
 
 class ProgramsTest(FolderTest):

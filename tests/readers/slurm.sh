@@ -85,17 +85,24 @@ grep -q '"status": "finished"' long/manifest.json || fail "the run is not done: 
 "$ropewalk" run scenes/long.toml --out long --wall-time 1 --slurm again.sh 2> said && fail "a job would resume another run"
 grep -q 'is there already' said || fail "an earlier run is not named: $(cat said)"
 
-# A job on two ranks of LAMMPS, which asks SLURM when it ends.
+# A job on two ranks of LAMMPS, which asks SLURM when it ends: a whole one, and one whose first piece has a second. The
+# next one goes on to the same bits.
 if [ -n "$lmp" ]; then
   mkdir bin && ln -s "$lmp" bin/lmp-ropewalk
-  sed 's/^duration_ps = .*/duration_ps = 1/' scenes/long.toml > scenes/ranks.toml
-  "$ropewalk" export scenes/ranks.toml --lammps ranks >/dev/null
-  sed -i 's/--ntasks=.*/--ntasks=2/; s/--time=.*/--time=00:02:00/' ranks/job.sh
-  (cd ranks && PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 sbatch job.sh >/dev/null) || fail "the job of ranks is refused"
-  patiently is_done || fail "the job of ranks does not end: $(cat ranks/messages.txt)"
-  ! grep -q 'does not tell' ranks/messages.txt || fail "a job of ranks does not know its end"
-  grep -q 'by 2 MPI' ranks/messages.txt || fail "not two ranks: $(cat ranks/messages.txt)"
-  "$ropewalk" import ranks >/dev/null || fail "what ranks wrote is not taken: $(cat ranks/messages.txt)"
+  sed 's/^duration_ps = .*/duration_ps = 300/' scenes/long.toml > scenes/ranks.toml
+  for job in whole pieces; do
+    "$ropewalk" export scenes/ranks.toml --lammps $job >/dev/null
+    sed -i 's/--ntasks=.*/--ntasks=2/; s/--time=.*/--time=00:05:00/' $job/job.sh
+    [ $job = whole ] || sed -i 's/^srun lmp/[ -e first ] || { touch first; wall="-var wall 1"; }\n&/' $job/job.sh
+    (cd $job && PATH=$work/bin:$PATH OMPI_ALLOW_RUN_AS_ROOT=1 sbatch job.sh >/dev/null) || fail "the job of ranks is refused"
+    patiently is_done || fail "the job of ranks does not end: $(cat $job/messages.txt)"
+    ! grep -q 'does not tell' $job/messages.txt || fail "a job of ranks does not know its end"
+    grep -q 'by 2 MPI' $job/messages.txt || fail "not two ranks: $(cat $job/messages.txt)"
+    "$ropewalk" import $job >/dev/null || fail "what ranks wrote is not taken: $(cat $job/messages.txt)"
+  done
+  grep -q 'Submitted batch job' pieces/messages.txt || fail "one job was enough: $(cat pieces/messages.txt)"
+  grep -q '"status": "finished"' pieces/manifest.json || fail "the pieces do not reach the end"
+  cmp whole/final.csv pieces/final.csv || fail "a job in pieces has other bits"
 fi
 
 # A search for thresholds, one point a task; the same command then makes the page of all.

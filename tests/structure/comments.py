@@ -3,7 +3,8 @@
 
     tests/structure/comments.py SOURCE_DIR            fails where there is one
 
-"double moved; // of both ends, nm" says less than "Displacement of both ends, nm".
+"double moved; // of both ends, nm" says less than "Displacement of both ends, nm". Nor does a unit stand for the noun: not
+"double moved; // nm, of both ends".
 A verb in a relative clause does not count: "of the scene that it names" has no verb of its own.
 """
 import re
@@ -11,7 +12,8 @@ import sys
 from pathlib import Path
 
 COMMENT = re.compile(r"(?:^|[^:\"'/])//+<?\s?(.*)$")
-GENITIVE = re.compile(r"(?:[Oo]f|[Ff]rom|[Bb]y|[Ii]n|[Oo]n) [a-z]")
+UNIT = r"(?:(?:1|nm|ps|eV|rad|K|nN|s|fs|pN)(?:\^?[0-9])?(?:[ /][a-z A-Z/]*(?:nm|ps|rad|eV|ns|K)(?:\^?[0-9])?)?, )?"
+GENITIVE = re.compile(UNIT + r"(?:[Oo]f|[Ff]rom|[Bb]y|[Ii]n|[Oo]n) [a-z]")
 # Words that are verbs in the comments of this tree, and endings that are hardly anything else.
 VERB = re.compile(r"\b(?:is|are|was|were|be|has|have|had|does|do|did|can|may|must|will|would|should|cannot|become|becomes|"
                   r"gives?|takes?|keeps?|kept|stands?|lies?|needs?|says?|goes|go|makes?|made|holds?|held|acts?|reads?|writes?|"

@@ -17,7 +17,7 @@ ParameterSet shipped() { return test::shipped("cnt-10-10-tersoff"); }
 // Second neighbours are 0.4 % of the cohesion of seven (6,2) tubes; of wider tubes they are nothing.
 TEST(OtherCodes, ThinTubesReachTheirSecondNeighbours) {
   const ParameterSet thin = read_parameters(ROPEWALK_SOURCE_DIR "/tests/validate/cnt-6-2-tersoff.toml");
-  const PairIntegral integral = surface_integral(thin);
+  const WallsIntegral integral = surface_integral(thin);
   const Well pair = integral.parallel_well();
   EXPECT_NEAR(rope_energy(integral, 7, pair.distance) / (12 * pair.energy), 1.0039, 2e-4);
   const Case& cohesion = find_case("hexagonal-cohesion");

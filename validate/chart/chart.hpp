@@ -1,21 +1,25 @@
-// The chart of speed against accuracy: cost and error of many models, most of which differ from the default in one
-// setting, in a few scenes. Scenes. Every model has the same physical specimen: the deforming part reaches from the
-// centre of one held element to the centre of another, its length does not depend on the element length, and the
-// loads act at those centres. Half an element extends beyond each end and is rigid. Long elements have a longer
-// overhang, which changes the mass at the ends and a contact that hardly depends on the twist. Energies are above
-// that of the untwisted state. Damping constants belong to a pair of elements or to a bond; they scale with the
-// element length, so that the dissipation per length of tube is the same. Most scenes are displacement-controlled:
-// the grips turn at a constant rate and are then held. The motion starts with the velocities of a uniform turn, so
-// that no wave starts from the grips. When the grips stop, the kinetic energy of the turn becomes vibration, which
-// is damped during the hold; ramps are so long that it is small. Observables are means over the second half of the
-// hold. Two scenes are load-controlled, where an error of the stiffness shows in the angle and not in the moment: a
-// couple on each grip element is ramped from rest at a constant rate, as [twist] does. Their ends are free, and
-// only damping removes the slowest torsional vibration; half of the hold is one period of it. The film is laid down
-// and left to itself. Cost: CPU time of this process in its steps, one thread, per simulated ns. A relaxation
-// simulates no time; its CPU time counts for the ramp and hold that it replaces.
+// The chart of speed against accuracy: cost and error of many models (models.toml), most of which differ from the
+// default in one setting, in a few scenes (scenes.toml, scenes/NAME.toml).
+//
+// Scenes. Every model has the same physical specimen: the deforming part reaches from the centre of one held
+// element to the centre of another, its length does not depend on the element length, and the loads act at those
+// centres. Half an element extends beyond each end and is rigid. Long elements have a longer overhang, which
+// changes the mass at the ends and a contact that hardly depends on the twist. Energies are above that of the
+// untwisted state. Damping constants belong to a pair of elements or to a bond; they scale with the element length,
+// so that the dissipation per length of tube is the same.
+//
+// Most scenes are displacement-controlled: the grips turn at a constant rate and are then held. The motion starts
+// with the velocities of a uniform turn, so that no wave starts from the grips. When the grips stop, the kinetic
+// energy of the turn becomes vibration, which is damped during the hold; ramps are so long that it is small.
+// Observables are means over the second half of the hold. Two scenes are load-controlled, where an error of the
+// stiffness shows in the angle and not in the moment: a couple on each grip element is ramped from rest at a
+// constant rate, as [twist] does. Their ends are free, and only damping removes the slowest torsional vibration;
+// half of the hold is one period of it. The film is laid down and left to itself.
+//
+// Cost: CPU time of this process in its steps, one thread, per simulated ns. A relaxation simulates no time; its
+// CPU time counts for the ramp and hold that it replaces.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,7 +28,6 @@
 #include "chart/point.hpp"
 #include "io/outputs.hpp"
 #include "observe/observe.hpp"
-#include "scene/loads/fix.hpp"
 #include "scene/scene.hpp"
 #include "sim/dynamics/simulation.hpp"
 
@@ -33,21 +36,22 @@ namespace ropewalk::validate {
 // --- Models ---
 
 struct ChartModel {
-  std::string name, kind;  // kind: the setting that is varied
-  std::string words;       // what a reader is told instead of the name
-  std::string set;         // parameter set; empty: the scene's
+  std::string name, kind;                          // kind: the setting that is varied
+  std::string words;                               // what a reader is told instead of the name
+  bool needs_contact = false, only_10_10 = false;  // scenes that it is for
+  std::string set;                                 // parameter set; empty: the scene's
   std::string law = "line";
   int nodes = 0;  // per element; 0: as line_nodes chooses
   Interaction::Precision precision = Interaction::Precision::mixed;
   double cutoff = 0;         // nm; 0: the set's
   double length = 1;         // element length over that of the default; rounded down to whole bonds
-  double time_step = 0;      // ps, of the bonds; 0: by the fraction
+  double time_step = 0;      // time step of the bonds, ps; 0: by the fraction
   double step_fraction = 0;  // fraction of the stability limit; 0: the default of a scene
   Stepping stepping;
   double mass_scale = 1;
   RunOptions::Mode mode = RunOptions::Mode::dynamics;
   bool at_once = false;           // relaxed once after the whole turn, not after each increment
-  double contact_viscosity = 20;  // eV ps/nm^2, at the default's element length
+  double contact_viscosity = 20;  // contact viscosity of a pair at the default element length, eV ps/nm^2
   double bond_damping = 1;        // 1/ps, likewise
   bool hooke = false;             // bonds; else as soft as the set's
 };
@@ -58,39 +62,40 @@ inline constexpr const char* finest_model = "finest";
 
 // --- Scenes ---
 
-// A scene as one model sees it.
-struct Specimen {
-  Scene scene;  // settings and parameter set, for interaction and time step
-  Topology topology;
-  Interaction interaction;
-  State state;           // before it is turned
-  double time_step = 0;  // ps, of the bonds
-  double spacing = 0;    // nm; 0: one tube
-  double element = 0;    // nm, of the default model
-
-  // Angle of each element about the z axis, in parts of the whole angle. With `about_itself` each element turns
-  // about its own axis and stays in place.
-  std::vector<double> twist_share;
-  bool about_itself = false;
-  std::vector<int> grips;  // elements that are held and turned
-  bool axial_free = false;
-  double angle = 0;           // rad, the whole turn
-  double moment = 0;          // eV on each grip element instead of an angle, with opposite signs at the two ends
-  double ramp = 0, hold = 0;  // ps
+// How the points of a scene are measured, from scenes.toml.
+struct ChartProtocol {
+  double hold = 0;            // time at the end of the run, ps
   int increments = 1;         // increments of a relaxation
+  bool about_itself = false;  // each element turns about its own axis and stays in place, otherwise about z
   // Before a relaxation all elements turn evenly. Otherwise only the grips turn, where the even turn is the
   // solution.
   bool interior_follows = true;
   bool moment_resists = true;  // sign of the end moment: positive against the turn, otherwise with it
   bool above_start = true;     // the energy is that above the untwisted state
   bool starts_at_rest = true;  // relaxed before it moves
-  bool is_rope = true;         // parallel tubes, if there are more than two
+};
 
-  void follow(double ramp_ps, double hold_ps, int steps = 1) { ramp = ramp_ps, hold = hold_ps, increments = steps; }
+// A scene as one model sees it.
+struct Specimen : ChartProtocol {
+  Scene scene;  // settings and parameter set, for interaction and time step
+  Topology topology;
+  Interaction interaction;
+  State state;                 // before it is turned
+  LoadsAndConstraints acting;  // of the ramp and the hold
+  double time_step = 0;        // time step of the bonds, ps
+  double spacing = 0;          // nm; 0: one tube
+  double element = 0;          // element length of the default model, nm
+
+  std::vector<double> twist_share;  // angle of each element, in parts of the whole angle
+  std::vector<int> grips;           // elements that are held and turned
+  double angle = 0;                 // rad, the whole turn
+  double moment = 0;    // eV on each grip element instead of an angle, with opposite signs at the two ends
+  double ramp = 0;      // ps
+  bool is_rope = true;  // parallel tubes, if there are more than two
+
   double duration() const { return ramp + hold; }
-  LoadsAndConstraints held() const;   // before the ramp; free in load control
-  LoadsAndConstraints loads() const;  // of the ramp and the hold
-  FixLoad still(int grip) const;
+  LoadsAndConstraints held() const;  // before the ramp; free in load control
+  const LoadsAndConstraints& loads() const { return acting; }
 };
 
 struct ChartReference {
@@ -98,24 +103,23 @@ struct ChartReference {
   double value = 0;
 };
 
-struct ChartScene {
+struct ChartScene : ChartProtocol {
   std::string name, title, setup;
-  bool contact = true;  // more than one tube
   std::vector<std::string> observables;
-  std::function<Specimen(const ChartModel&)> build;
-  std::function<std::vector<ChartReference>()> atoms;  // may be empty
-  // Whether a relaxation ends in the state of the dynamics. Under couples on its tubes a rope turns by friction
-  // between them; a relaxation has none and ends at three quarters of the angle.
-  bool relaxes = true;
-  // Whether the scene's tubes are (10,10): the published model and its law describe no others.
-  bool published = true;
-  // Whether the chart shows models with bonds as soft as the set's.
-  bool soft_bonds = true;
+  Scene scene;          // as in its file
+  double element = 0;   // element length of the default model, nm
+  double band = 0;      // length of a grip beyond its innermost centres, nm
+  bool relaxes = true;  // a relaxation ends in the state of the dynamics
+  // What its file says: more than one tube; (10,10) tubes, the only ones of the published model; bonds as soft as the
+  // set's.
+  bool contact = true, published = true, soft_bonds = true;
+
+  Specimen build(const ChartModel& model) const;
+  std::vector<ChartReference> atoms() const;  // may be empty
 };
 
-// The scene of a model without elements: set, contact and damping at this element length (nm).
-Scene knobs_of(const ChartModel& model, const std::string& default_set, double element_length);
-double rest_spacing(const Scene& scene);  // nm, of two tubes
+// The settings of the model, all but the element length and the time step.
+void apply(const ChartModel& model, Scene& scene);
 
 const std::vector<ChartScene>& chart_scenes();
 const ChartScene& find_chart_scene(const std::string& name);

@@ -37,7 +37,7 @@ std::vector<ChartRow> chart_rows(const std::vector<ChartPoint>& points) {
   std::vector<ChartRow> rows;
   for (const ChartScene& scene : chart_scenes()) {
     const ChartPoint* finest = finest_of(points, scene.name);
-    const std::vector<ChartReference> atoms = scene.atoms ? scene.atoms() : std::vector<ChartReference>();
+    const std::vector<ChartReference> atoms = scene.atoms();
     for (const ChartPoint& p : points) {
       if (p.scene != scene.name || !p.error.empty()) continue;
       for (const std::string& o : scene.observables) {

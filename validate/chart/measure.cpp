@@ -22,7 +22,7 @@ namespace {
 constexpr double start_tolerance = 5e-3, turned_tolerance = 5e-3;  // eV/nm
 constexpr long max_steps = 20000;                                  // steps of one relaxation
 constexpr int samples = 40;                                        // samples of the observables
-constexpr double sampled_part = 0.5;                               // of the hold, at its end
+constexpr double sampled_part = 0.5;                               // fraction of the hold, at its end
 constexpr double min_seconds = 0.25;                               // short runs are repeated
 constexpr int max_spans = 8;
 

@@ -201,7 +201,7 @@ std::string points_table(const ChartScene& scene, const std::vector<ChartPoint>&
       "<th class=\"number\">s per ns</th><th class=\"number\">ns per element-step</th>"
       "<th class=\"number\">10<sup>9</sup> instructions per ns</th>";
   std::vector<std::pair<std::string, std::string>> columns;
-  const std::vector<ChartReference> atoms = scene.atoms ? scene.atoms() : std::vector<ChartReference>();
+  const std::vector<ChartReference> atoms = scene.atoms();
   for (const std::string& o : scene.observables) {
     columns.emplace_back(o, "finest");
     for (const ChartReference& a : atoms)

@@ -14,7 +14,7 @@ struct ChartPoint {
   std::string scene, model, kind, law, integrator, mode, precision;
   int nodes = 0, elements = 0;
   double cutoff = 0, element_length = 0;  // nm
-  double time_step = 0;                   // ps, of the bonds
+  double time_step = 0;                   // time step of the bonds, ps
   double mass_scale = 1, contact_viscosity = 0, bond_damping = 0;
   double simulated = 0;  // ps
   double steps = 0;

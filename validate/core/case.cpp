@@ -130,13 +130,15 @@ CaseResult run_case(const Case& c, const CaseContext& context) {
 
 bool like(const ParameterSet& i, const ParameterSet& j) {
   if (i.filament || j.filament) return i.filament == j.filament && i.name == j.name;
-  return i.honeycomb.name == j.honeycomb.name && i.chirality.n == j.chirality.n && i.chirality.m == j.chirality.m &&
+  return tube_name(i) == tube_name(j) &&
          provenance_value(i, "potential_hash") == provenance_value(j, "potential_hash");
 }
 
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped) {
   if (given.filament && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
+  if (!given.walls.empty() && !c.several_walls && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
+    throw NotApplicable("the atoms of this case are those of a tube of one wall");
   if (c.law == Case::Law::line && !given.law<LineParameters>())
     throw NotApplicable("the set has no contact law `line`");
   if (c.law == Case::Law::paper && !given.law<PaperContact>())

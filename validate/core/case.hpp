@@ -162,6 +162,7 @@ struct Case {
   std::vector<std::string> sets = {"cnt-10-10-tersoff"};
   // Compares pairs of unlike tubes too: takes the second set of `validate run --with`.
   bool takes_two = false;
+  bool several_walls = false;  // of the groups atoms and codes: the case is about tubes of several walls
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and
   // the same interatomic potential. The text says why.
   std::string only_these;

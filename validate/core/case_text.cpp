@@ -95,6 +95,12 @@ CaseText parse_case_text(const std::string& path, const std::string& text) {
 
 RegisteredText::RegisteredText(const char* path, const char* text) { registered_texts().emplace_back(path, text); }
 
+std::string registered_text(const std::string& wanted) {
+  for (const auto& [path, text] : registered_texts())
+    if (wanted == path) return text;
+  throw std::out_of_range("the program was built without " + wanted);
+}
+
 std::string case_scene(const std::string& name) {
   for (const auto& [path, text] : registered_texts()) {
     const std::filesystem::path file(path);

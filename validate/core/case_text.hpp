@@ -31,6 +31,10 @@ struct RegisteredText {
   RegisteredText(const char* path, const char* text);
 };
 
+// The registered text of a file by its path from validate/ on, as "chart/models.toml". Throws std::out_of_range if there is
+// none.
+std::string registered_text(const std::string& path);
+
 // The registered scene.toml of a case. Throws std::out_of_range if it has none.
 std::string case_scene(const std::string& name);
 

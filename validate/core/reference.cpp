@@ -114,7 +114,9 @@ std::string atoms_folder(const ParameterSet& set) {
 
 std::string find_reference(const CaseContext& context, const ParameterSet& set, const std::string& name) {
   const std::string like =
-      fmt::format("{}-{}-{}-{}", set.honeycomb.stem(), set.chirality.n, set.chirality.m, provenance_value(set, "potential"));
+      set.walls.empty() ? fmt::format("{}-{}-{}-{}", set.honeycomb.stem(), set.chirality.n, set.chirality.m,
+                                      provenance_value(set, "potential"))
+                        : leaf_of_name(set);
   for (const fs::path& folder : {fs::path(atoms_folder(set)), fs::path(context.references) / like})
     if (fs::exists(folder / (name + ".csv"))) return (folder / (name + ".csv")).string();
   return "";

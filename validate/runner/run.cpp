@@ -61,7 +61,7 @@ struct Task {
   std::vector<ParameterSet> sets;
   std::string not_applicable;
   bool make_atoms = false;
-  double seconds = 0;  // estimated, of LAMMPS
+  double seconds = 0;  // estimated time of LAMMPS, s
   std::string no_atoms = "make them with --atoms";
 };
 

@@ -4,7 +4,7 @@
 //               surface_density (1/nm^2) that it was integrated from; K (eV/nm^2), s (nm), c (nm), p, q, core_gap,
 //               switch_gap, cutoff_gap (nm) of contact/line.hpp; pair_spacing (nm), pair_energy (eV/nm) and
 //               cross90_energy (eV) of that law; optional: registry, the standard deviation of pair_energy over the
-//               registries of two real tubes, over its mean. A filament has no atoms to integrate over: epsilon,
+//               registries of two real tubes, over its mean; cutoff_loss, the part of the well that lj_cutoff leaves out. A filament has no atoms to integrate over: epsilon,
 //               sigma, lj_cutoff, surface_density, registry and [contact.line.universal] are not in its file.
 //   [contact.line.universal]  the same law for any pair of radii: log_K, s, c, p, q, each
 //               { values = [6 numbers], standard_errors = [6 numbers] }, and error
@@ -111,6 +111,7 @@ LineParameters read_line(const LawTable& law) {
   line.pair_spacing = law.number("pair_spacing", "nm", Bounds::positive(1e3));
   line.pair_energy = law.number("pair_energy", "eV/nm", Bounds::range(-1e6, 0));
   line.cross90_energy = law.number("cross90_energy", "eV", Bounds::range(-1e6, 0));
+  if (t.has("cutoff_loss")) law.number("cutoff_loss", "1", Bounds::range(-1, 1));
   if (t.has("registry")) law.number("registry", "1", Bounds::range(0, 1));
   check_line(t, d);
   if (law.set.filament) check_wells(t, line);

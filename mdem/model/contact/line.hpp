@@ -130,7 +130,7 @@ LineWell line_crossed_well(const LineDensity& density, double angle);
 struct UniversalLine {
   static constexpr int terms = 6;
   using Row = std::array<double, terms>;
-  double epsilon = 0;    // eV, of the atom-atom law
+  double epsilon = 0;    // depth of the atom-atom law, eV
   double sigma = 0;      // nm
   double lj_cutoff = 0;  // nm; 0: none
   Row log_K{}, s{}, c{}, p{}, q{};

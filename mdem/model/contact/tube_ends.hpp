@@ -59,7 +59,10 @@ inline TubeEnd tube_end(Chirality c, double radius, double atoms_per_length) {
 
 class EndContact {
  public:
-  EndContact(const LennardJones& law, const TubeEnd& i, const TubeEnd& j);
+  // `i`, `j`: the ends of all walls of both tubes, inside first, which lie in one plane each. V is the sum over them.
+  EndContact(const LennardJones& law, const std::vector<TubeEnd>& i, const std::vector<TubeEnd>& j);
+  EndContact(const LennardJones& law, const TubeEnd& i, const TubeEnd& j)
+      : EndContact(law, std::vector{i}, std::vector{j}) {}
 
   double reach() const { return reach_; }  // largest gap with a force
   double rest() const { return rest_; }    // the gap of lowest energy
@@ -78,7 +81,7 @@ class EndContact {
   }
 
  private:
-  static constexpr double nearest = 0.1, spacing = 0.01;  // nm, of the table
+  static constexpr double nearest = 0.1, spacing = 0.01;  // first gap and spacing of the table, nm
   static constexpr double without_cutoff = 4;             // sigma
   static constexpr int turns = 128;                       // values of theta in half a circle
 
@@ -91,12 +94,19 @@ class EndContact {
 
 // --- Definitions ------------------------------------------------------------------------------------
 
-inline EndContact::EndContact(const LennardJones& law, const TubeEnd& i, const TubeEnd& j)
-    : reach_(law.cutoff > 0 ? law.cutoff : without_cutoff * law.sigma), width_(i.radius + j.radius) {
+inline EndContact::EndContact(const LennardJones& law, const std::vector<TubeEnd>& i, const std::vector<TubeEnd>& j)
+    : reach_(law.cutoff > 0 ? law.cutoff : without_cutoff * law.sigma), width_(i.back().radius + j.back().radius) {
   ROPEWALK_EXPECTS(law.epsilon > 0 && law.sigma > 0 && reach_ > nearest);
   const int steps = static_cast<int>(std::ceil((reach_ - nearest) / spacing));
   step_ = (reach_ - nearest) / steps;
-  for (int k = 0; k < steps; ++k) table_.push_back(sum(law, reach_, i, j, nearest + k * step_));
+  for (int k = 0; k < steps; ++k) {
+    table_.emplace_back();
+    for (const TubeEnd& of_i : i)
+      for (const TubeEnd& of_j : j) {
+        const RadialTerms t = sum(law, reach_, of_i, of_j, nearest + k * step_);
+        table_.back().energy += t.energy, table_.back().derivative += t.derivative, table_.back().second += t.second;
+      }
+  }
   table_.push_back({});  // no atom reaches another one
   // The well, and its inner wall.
   std::size_t lowest = 0;

@@ -43,7 +43,7 @@ struct ViewInput {
   std::vector<int> tube_begin;  // as of a Topology
   // For each tube: the tube of the scene that it is a piece of, and where in it the piece begins. Both from 0.
   std::vector<std::array<int, 2>> piece_of;
-  std::vector<double> tube_radius;  // nm, of each tube
+  std::vector<double> tube_radius;  // radius of each tube, nm
   // One entry a frame, in the order of time. Element e of tube t reaches from joint e + t to joint e + t + 1.
   std::vector<double> time_ps;
   std::vector<std::int64_t> step;

@@ -17,7 +17,7 @@ struct PlateOptions {
   bool sections = false;
   std::vector<std::vector<std::string>> curves;  // columns of the log: each group makes one chart
   std::string x;                                 // PlateInput::x
-  double width = 1040, highest = 200;            // pixels, of the figure and of each state
+  double width = 1040, highest = 200;            // width of the figure and largest height of each state, pixels
 };
 
 // Throw InputError where the run has no frames, or none near a time. plate_of: for figures of several runs that are

@@ -39,7 +39,7 @@ class GripLoad : public Load {
   std::array<GripAxis, 6> axes;  // displacement along x, y, z, rotation about x, y, z
   bool slide_free = false, spin_free = false, tilt_free = false;
   double smooth =
-      -1;  // ps, of the corners of all schedules; negative: that of motions follows from the travel of sound
+      -1;  // smoothing of the corners of all schedules, ps; negative: that of motions follows from the travel of sound
 
   // The grip on these elements of a scene, `depth` of each tube after one another. `free_length`: nm, to which a
   // strain refers; a grip that follows no strain needs none.

@@ -198,7 +198,7 @@ void PeriodicDrive::refuse(const TomlTable& top, const Scene& scene) const {
 
 namespace {
 
-// nm, of the axes of the outermost tubes from that of the rope.
+// Distance of the axes of the outermost tubes from that of the rope, nm.
 double rim_of(const Scene& scene, const Interaction& interaction) {
   const auto* rope = dynamic_cast<const RopeSource*>(scene.source.get());
   if (!rope) return 0;
@@ -302,7 +302,7 @@ PeriodicLoad PeriodicLoad::on_tubes(const Topology& topology, double reach, doub
   }
   const TubeType& type = topology.type_of(0);
   const double a = type.element_length;
-  double stiffness = 0;  // eV/nm, of all strands
+  double stiffness = 0;  // stiffness of all strands, eV/nm
   for (int s = 0; s < topology.strands(); ++s)
     stiffness += topology
                      .type_of(topology.groups.strand_begin.empty()
@@ -380,22 +380,24 @@ void PeriodicLoad::add_forces(const State&, double time, std::vector<PointLoad>&
 
 // Strands slide along one another. Their images must reach as far as the contact all the same, but for the slack.
 void PeriodicLoad::check_reach(const Topology& topology, const State& s) const {
-  const int all = topology.elements() / topology.strands();
   const double half = slack * topology.type_of(0).element_length, far = std::numeric_limits<double>::max();
   double lowest_own = far, highest_own = -far, images_from = -far, images_to = far;
-  int first = 0;
-  for (int e = 0; e < topology.elements(); e += all) {
-    const auto z = [&](int k) { return s.position.z[static_cast<std::size_t>(e + k)]; };
-    if (z(0) > images_from) first = e;
-    images_from = std::max(images_from, z(0));
-    images_to = std::min(images_to, z(all - 1));
-    lowest_own = std::min(lowest_own, z(images));
-    highest_own = std::max(highest_own, z(all - 1 - images));
-  }
+  std::size_t k = 0, first = 0;
+  for_images(topology, [&](int image, int original, double sign) {
+    const double z = s.position.z[static_cast<std::size_t>(image)],
+                 own_z = s.position.z[static_cast<std::size_t>(original)];
+    const int place = static_cast<int>(k) % images;  // from the end of the strand
+    if (place == 0 && sign < 0 && z > images_from) first = k;
+    if (place == 0 && sign < 0) images_from = std::max(images_from, z);
+    if (place == 0 && sign > 0) images_to = std::min(images_to, z);
+    if (place + 1 == images && sign < 0) highest_own = std::max(highest_own, own_z);
+    if (place + 1 == images && sign > 0) lowest_own = std::min(lowest_own, own_z);
+    ++k;
+  });
   const double missing = std::max(images_from + reach_ - lowest_own, highest_own + reach_ - images_to) - half;
   if (missing <= 0) return;
   throw NumericalError(
-      s.step, first,
+      s.step, (numbers_.empty() ? elements : numbers_)[first],
       fmt::format(
           "the tubes of the slice have slid so far along one another that its images no longer reach as far as "
           "the contact, by {:.3g} nm",
@@ -428,8 +430,11 @@ void PeriodicLoad::follow(int image, int original, double sign, const When& when
 
 template <class Act>
 void PeriodicLoad::for_images(const Topology& topology, const Act& act) const {
-  for (const End end : {lower_end, upper_end})
-    for (const int image : ends_[end]) act(image, topology.original_of(image), end == upper_end ? 1.0 : -1.0);
+  const std::size_t lower = ends_[lower_end].size(), all = lower + ends_[upper_end].size();
+  for (std::size_t k = 0; k < all; ++k) {
+    const int image = elements[k];
+    act(image, numbers_.empty() ? topology.original_of(image) : elements[all + k], k < lower ? -1.0 : 1.0);
+  }
 }
 
 void PeriodicLoad::lead(const Topology& topology, const When& when, const Length& length, State& s) const {

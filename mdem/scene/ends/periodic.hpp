@@ -33,10 +33,10 @@ class PeriodicLoad : public Load {
  public:
   int images = 0;                        // elements at each end of a tube; 0: as the contact needs
   std::vector<Schedule::Point> twist;    // rad/nm; from the start, or chosen by turns
-  std::vector<Schedule::Point> turns;    // 1/nm, of a yarn whose surface has the angle of this one; none: by twist
+  std::vector<Schedule::Point> turns;    // turns of a yarn with the angle of this one at its surface, 1/nm; none: by twist
   double yarn_diameter = 0;              // nm; 0: none is typed
   std::vector<Schedule::Point> strain;   // of the period; none: it stays
-  std::vector<Schedule::Point> tension;  // eV/nm, of the rope; none: its length is prescribed at all times
+  std::vector<Schedule::Point> tension;  // tension of the rope, eV/nm; none: its length is prescribed at all times
 
   // For the tubes of a slice (TubeGroups::images). `reach` (nm): of the contact, between element centres; `rim`
   // (nm): where the axes of the outermost tubes stand, for turns. Throws InputError where the images do not reach
@@ -52,7 +52,10 @@ class PeriodicLoad : public Load {
 
   std::shared_ptr<Load> copy() const override { return std::make_shared<PeriodicLoad>(*this); }
   Order order() const override { return Order::prescribed_motion; }
-  std::vector<int> reads(const Topology& topology) const override;  // the originals
+  std::vector<int> reads(const Topology& topology) const override;  // the originals, one for each image
+  // On several processes `elements` then has the images and behind them their originals, in the same order, as
+  // elements of a state that has all of them.
+  void keep(const std::vector<std::size_t>&, const LoadProcesses&) override { numbers_ = elements; }
   void constrain(const Topology&, double time, double ahead, State&) const override;
   void constrain_after(const Forces& total, double dt, const Topology&, double time, double ahead,
                        State&) const override;
@@ -96,6 +99,7 @@ class PeriodicLoad : public Load {
   Schedule schedule_;            // course of tau, smoothed
   Schedule stretched_, pulled_;  // courses of strain, smoothed, and of tension
   EndElements ends_;
+  std::vector<int> numbers_;  // numbers of the images in the scene, on several processes
   double period_ = 0, reach_ = 0;  // nm
 };
 
@@ -116,8 +120,9 @@ class PeriodicDrive : public Drive {
   Ends ends() const override { return Ends::endless; }
   std::string why_not_split() const override { return "a periodic slice counts its images in elements"; }
   NotForLammps not_for_lammps() const override {
-    return {"periodic",
-            "the images of a slice follow elements a period away, which other ranks have; a rope of ten periods "
+    if (load.tension.empty()) return {};
+    return {"periodic.tension_nN",
+            "the period then moves by the forces on all images, which several ranks have; a rope of ten periods "
             "between grips, whose middle is as a slice, takes ten times as long a step"};
   }
 };

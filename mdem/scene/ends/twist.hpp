@@ -27,7 +27,7 @@ class TwistLoad : public Load {
  public:
   enum class Application { couple, follower, conservative, tangential };
   enum class Reading { per_tube, total };  // the moment is that of each end element, or of all of them
-  double moment = 0;                       // eV, in its reading, at the end of the ramp
+  double moment = 0;                       // moment at the end of the ramp, in its reading, eV
   double rate = 0;                         // eV/ps; 0: it acts at once
   double hold = 0;                         // ps after the ramp
   double unload_rate = 0;                  // eV/ps, after the hold; 0: the moment stays
@@ -96,10 +96,6 @@ class TwistDrive : public Drive {
   }
   void refuse_start(const Scene&, const Topology&, const State&, const LoadsAndConstraints&) const override;
   Ends ends() const override { return Ends::loaded; }
-  NotForLammps not_for_lammps() const override {
-    if (!load.geometric_only) return {};
-    return {"twist.geometric_only", "all elements of a tube get their spin at once, and several ranks have them"};
-  }
 
  private:
   void refuse_in_relaxation(const TomlTable& top, const Scene&) const;

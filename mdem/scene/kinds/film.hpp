@@ -15,8 +15,8 @@ class FilmSource : public Source {
 
   int tubes = 0;
   double length = 0;   // nm, rounded to whole elements
-  double width = 0;    // nm, of the box in x
-  double depth = 0;    // nm, in y
+  double width = 0;    // side of the box in x, nm
+  double depth = 0;    // side in y, nm
   double spacing = 0;  // nm: no two axes are closer; 0: where two crossed tubes bind best
   Laid laid = Laid::level;
 

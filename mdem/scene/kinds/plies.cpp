@@ -45,10 +45,10 @@ struct Helices {
   double winding = 0;               // rad/nm of z
   std::optional<double> own_twist;  // rad/nm
   double radius = 0;                // nm
-  double facing = 0;                // rad, of the section against the direction from the axis, at s = 0
+  double facing = 0;                // angle of the section to the direction from the axis, at s = 0, rad
 
   double cosine() const { return 1 / std::hypot(1, radius * winding); }
-  // rad/nm, of the section against the direction from the axis.
+  // Turn of the section against the direction from the axis, rad/nm.
   double rolling() const { return own_twist ? *own_twist - winding * cosine() * cosine() : 0; }
   bool are_straight() const { return winding == 0 && rolling() == 0; }
   double azimuth(int rope, double s) const { return 2 * units::pi * rope / ropes + winding * cosine() * s; }

@@ -22,7 +22,7 @@ class RopeSource : public Source {
 
   int tubes = 91;  // number of tubes in a cross-section; full shells have 1, 7, 19, 37, 61, 91, 127, 169, 217, ...
   Packing packing = Packing::hexagonal;
-  std::vector<std::pair<double, double>> typed_places = {};  // nm, of the tubes, in place of a packing
+  std::vector<std::pair<double, double>> typed_places = {};  // places of the tubes in place of a packing, nm
   double length = 0;                                         // nm, rounded to whole elements
   double spacing = 0;                                        // nm; 0: that at which two tubes bind best
   double perturbation = 0;  // nm: amplitude of a random lateral displacement of every element
@@ -49,7 +49,7 @@ class RopeSource : public Source {
   void place_strands(const Scene& scene, double spacing_of_tubes, Random& random, Topology&, State&) const;
   // Numbers of elements from the lower end of a strand at which one tube ends and the next begins.
   std::vector<int> cuts(int strand_shift, double element_length, double gap_here, Random& random) const;
-  double drawn_length(double element_length, Random& random) const;  // nm, of a tube
+  double drawn_length(double element_length, Random& random) const;  // length of a tube, nm
   // The gap of a scene: the typed one, or where ends rest. Refuses one into which ends would be driven.
   double least_gap(const Scene& scene) const;
   // A slice of an endless rope (TubeGroups::images): tubes end at the same elements in each period.

@@ -13,7 +13,7 @@
 namespace ropewalk {
 namespace {
 
-constexpr double hardest_push = 0.05;  // nm, of ends in line
+constexpr double hardest_push = 0.05;  // overlap of ends in line, nm
 
 }  // namespace
 

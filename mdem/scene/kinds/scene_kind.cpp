@@ -52,11 +52,8 @@ std::string headers() {
 const std::vector<SceneKind>& scene_kinds() { return kinds_of_scenes(); }
 
 bool add_scene_kind(SceneKind kind) {
-  register_own_part(std::any_of(kinds_of_scenes().begin(), kinds_of_scenes().end(),
-                                [&](const SceneKind& other) { return other.table.name == kind.table.name; }),
-                    "scene kind", kind.table.name);
-  kinds_of_scenes().push_back(std::move(kind));
-  return true;
+  return add_own_part(kinds_of_scenes(), std::move(kind), "scene kind",
+                      [](const SceneKind& k) { return k.table.name; });
 }
 
 void read_source(const TomlTable& top, Scene& scene) {

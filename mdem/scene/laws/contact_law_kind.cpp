@@ -26,9 +26,9 @@ std::vector<ContactLawKind>& laws_of_contact() {
 const std::vector<ContactLawKind>& contact_law_kinds() { return laws_of_contact(); }
 
 bool add_contact_law(ContactLawKind kind) {
-  register_own_part(contact_law_kind(kind.name) || kind.name == "none", "contact law", kind.name);
-  laws_of_contact().push_back(std::move(kind));
-  return true;
+  refuse_taken_name(kind.name == "none", "contact law", kind.name);
+  return add_own_part(laws_of_contact(), std::move(kind), "contact law",
+                      [](const ContactLawKind& k) { return k.name; });
 }
 
 const ContactLawKind* contact_law_kind(const std::string& name) {

@@ -93,7 +93,10 @@ std::vector<EndContact> contacts_of_ends(const Scene& scene) {
   // A filament has round ends: the line law of its like acts between them as well.
   if (scene.sets[0].filament) return out;
   const auto end_of = [](const ParameterSet& set) {
-    return tube_end(set.chirality, set.radius, set.atoms_per_length);
+    std::vector<TubeEnd> ends;
+    for (const Wall& wall : set.walls) ends.push_back(tube_end(wall.chirality, wall.radius, wall.atoms_per_length));
+    if (ends.empty()) ends.push_back(tube_end(set.chirality, set.radius, set.atoms_per_length));
+    return ends;
   };
   for (const ParameterSet& i : scene.sets)
     for (const ParameterSet& j : scene.sets) {

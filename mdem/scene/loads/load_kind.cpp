@@ -158,11 +158,7 @@ std::vector<int> selected_tubes(const Scene& scene, const Selection& on, const T
 const std::vector<LoadKind>& load_kinds() { return kinds_of_loads(); }
 
 bool add_load_kind(LoadKind kind) {
-  register_own_part(std::any_of(kinds_of_loads().begin(), kinds_of_loads().end(),
-                                [&](const LoadKind& other) { return other.name == kind.name; }),
-                    "load", kind.name);
-  kinds_of_loads().push_back(std::move(kind));
-  return true;
+  return add_own_part(kinds_of_loads(), std::move(kind), "load", [](const LoadKind& k) { return k.name; });
 }
 
 namespace {

@@ -13,7 +13,7 @@ namespace ropewalk {
 namespace {
 
 constexpr const char* per_pair =
-    "contact_viscosity_eV_ps_per_nm2";  // an old key, of elements of the set's own length
+    "contact_viscosity_eV_ps_per_nm2";  // an old key, for elements of the set's own length
 constexpr const char* per_length = "contact_viscosity_eV_ps_per_nm3";
 Bounds viscosities() { return Bounds::non_negative(1e6); }
 

@@ -21,11 +21,11 @@ class ContactLaw {
 
   virtual std::string name() const = 0;
 
-  // nm, of element centres: U and its gradient are zero from here on, whatever the types.
+  // Distance of element centres from which on U and its gradient are zero, whatever the types, nm.
   virtual double cutoff() const = 0;
   // nm: how far from its centre an element has points that interact. Turning the element moves them.
   virtual double lever() const { return 0; }
-  // nm, of the first neighbour list.
+  // Skin of the first neighbour list, nm.
   virtual double default_skin() const { return 0.15; }
   // Whether buffers of the list's chunks must cover all elements between the first and the last one.
   virtual bool whole_ranges() const { return true; }
@@ -49,7 +49,7 @@ class ContactLaw {
   // numerically from energy(), and a law that binds nowhere rests at its cutoff.
   virtual double parallel_distance(TypePair types, double length) const;  // distance of the lowest energy
   virtual double crossed_distance(TypePair types, double length) const;   // the same at a right angle
-  virtual double binding(TypePair types, double length) const;            // eV/nm, at most, never negative
+  virtual double binding(TypePair types, double length) const;            // largest, eV/nm, never negative
   // nm: where a typed cutoff would cut, of tube axes or of element centres.
   virtual double range(TypePair) const { return cutoff(); }
   // nm: nearer than this the energy is a continuation that nothing was fitted to.

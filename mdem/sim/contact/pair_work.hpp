@@ -55,7 +55,7 @@ struct PairBuffer {
 class PairWork {
  public:
   virtual ~PairWork() = default;
-  virtual double reach() const = 0;  // nm, of element centres
+  virtual double reach() const = 0;  // distance of element centres, nm
   // After each build of the list: the number of chunks, then the pairs of each chunk that has any, by any thread.
   virtual void start(std::size_t chunks) = 0;
   virtual void list(std::size_t chunk, const ChunkPairs& pairs) = 0;

@@ -78,7 +78,7 @@ class DeviceStepper {
   std::size_t bytes_ = 0;
   int elements_ = 0, stride_ = 0, groups_ = 0, buckets_ = 0;
   std::size_t listed_ = 0, room_ = 0;  // neighbours of all elements
-  double unit_ = 1;                    // nm, of the coordinates
+  double unit_ = 1;                    // unit of the coordinates, nm
   std::vector<int> hosted_;
   std::vector<double> rows_, sums_;  // sent and read in every step
   Device::Memory kind_, types_, tables_, motion_, force_, bond_, reference_, told_, summary_, last_, cell_, first_,

@@ -34,7 +34,7 @@ bool is_kept_between(const EndDrives& drives, std::size_t axis);
 Schedule moved_apart(const EndDrives& drives, std::size_t axis);
 // The force or couple on the tube that has the largest at this end.
 Schedule load_of_each(const EndDrives& drives, End end, std::size_t axis);
-// ps, from which on all forces and couples are whole.
+// When all forces and couples have reached their full size, ps.
 double whole_from(const EndDrives& drives);
 
 // A moment about the axis of a rope, prescribed at one end or at both.

@@ -1,5 +1,5 @@
-// Whether the account of energy closes from one time to another. `run` goes back and divides its steps where it does not
-// (run/step_control.hpp), a rank of LAMMPS stops, and `import` says so.
+// Whether the account of energy closes from one time to another. `run` and the ranks of LAMMPS go back and divide their
+// steps where it does not (sim/dynamics/step_control.hpp).
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ inline constexpr std::int64_t account_window = 128;
 
 // The account of energy at one time.
 struct EnergyMark {
-  double energy = 0;  // eV, in all; NaN where it is not known
+  double energy = 0;  // total energy, eV; NaN: it is not known
   EnergySupply supply;
 };
 EnergyMark energy_mark(const Simulation& simulation);

@@ -41,7 +41,7 @@ class Gauges {
   };
   struct Sums {
     std::array<Sum, 2> of;
-    double since = 0;  // ps, of the last reading
+    double since = 0;  // time of the last reading, ps
   };
 
   Gauges() = default;

@@ -55,7 +55,7 @@ int number_of(const Topology& topology, int element) {
   return topology.part->number[static_cast<std::size_t>(element)];
 }
 
-// nm/ps, of the period of a slice. Its images have it beside the velocities of their originals.
+// Speed of the period of a slice, nm/ps. Its images have it beside the velocities of their originals.
 double period_rate(const Topology& topology, const State& state) {
   const auto original = static_cast<std::size_t>(topology.original_of(0));  // element 0 is an image below it
   return state.velocity.z[original] - state.velocity.z[0];

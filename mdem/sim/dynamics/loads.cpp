@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "model/contract.hpp"
+#include "sim/dynamics/spins.hpp"
 
 namespace ropewalk {
 
@@ -99,25 +100,10 @@ std::vector<ConstraintImpulse> reactions_at_rest(const Topology& topology, const
 }
 
 void relax_spins(const Topology& topology, State& state) {
-  // The smallest rotation that carries axis t_i to t_j carries frame i to the twist-free frame j.
-  const auto follow = [&](int from, int to) {
-    const auto i = static_cast<std::size_t>(from), j = static_cast<std::size_t>(to);
-    const Quaternion qi = state.orientation[i];
-    const Quaternion carried = Quaternion::FromTwoVectors(axis_of(qi), axis_of(state.orientation[j])) * qi;
-    state.orientation.set(j, carried.normalized());
-  };
-  for (int t = 0; t < topology.tubes(); ++t) {
-    const int from = topology.tube_begin[t], to = topology.tube_begin[t + 1];
-    const int middle = (from + to) / 2;
-    for (int i = middle; i + 1 < to; ++i) follow(i, i + 1);
-    for (int i = middle; i > from; --i) follow(i, i - 1);
-    for (int e = from; e < to; ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      const Vector3 axis = axis_of(state.orientation[i]);
-      const Vector3 w = state.angular_velocity[i];
-      state.angular_velocity.set(i, w - w.dot(axis) * axis);
-    }
-  }
+  std::vector<char> known(state.size(), 0);
+  for (const int i : middles_of_tubes(topology, topology)) known[static_cast<std::size_t>(i)] = 1;
+  follow_spins(topology, known, state);
+  take_spin_velocities_away(topology, state);
 }
 
 }  // namespace ropewalk

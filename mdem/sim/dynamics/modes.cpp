@@ -92,7 +92,7 @@ VectorXcd normal(const Quadratic& q, VectorXcd u) {
   return u / std::sqrt(q.kinetic_norm(u, 1));
 }
 
-// Moves of the whole along the axes change no force.
+// Resolution of the tangent, 1/ps: the rate that it gives to a translation of all elements, which should be 0.
 double resolution_of(const Quadratic& q, const Tangent& t, const Reduction& r) {
   double worst = 0;
   for (int axis = 0; axis < 3; ++axis) {

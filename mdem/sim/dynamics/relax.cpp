@@ -135,7 +135,7 @@ class Simulation::Stiffness {
   // The most that the energy falls while the elements go along a motion, eV: the forces' work, by the trapezoidal
   // rule.
   double fall_along(const Motion& motion) {
-    constexpr double step = 0.01, farthest = 0.2;  // nm, of the element that goes farthest
+    constexpr double step = 0.01, farthest = 0.2;  // displacement of the element that goes farthest, nm
     const double time = step / s_.farthest(motion);
     double most = 0, work = 0, power = at_rest_.dot(motion);
     for (int k = 1; k * step < 1.001 * farthest; ++k) {
@@ -385,7 +385,7 @@ bool Simulation::relax_by_fire(double force, long most, const std::function<bool
 void Simulation::displace(const Vec3Array& displacement, const Vec3Array& turn, double passes) {
   ROPEWALK_EXPECTS(relaxation_.underway() && relaxation_.part_began < 0 && passes >= 0);
   relaxation_.constant = total_energy() - account_.supplied();
-  const double span = passes > 0 ? passes : 1;  // ps, of the motion
+  const double span = passes > 0 ? passes : 1;  // time of the motion, ps
   for (std::size_t i = 0; i < state_.size(); ++i) {
     state_.velocity.set(i, displacement[i] / span);
     state_.angular_velocity.set(i, turn[i] / span);

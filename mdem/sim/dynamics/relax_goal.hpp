@@ -26,8 +26,8 @@ struct Relaxed {
   double above = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();  // 2 sqrt(above/U)
   std::int64_t saddles = 0;                                 // that it rested on and left
-  double falls =
-      0;  // eV: it rests on a saddle beyond which the energy falls by so little, or more; it stayed there
+  // Where it rests on a saddle and stayed there: how far the energy falls beyond it at least, eV; else 0.
+  double falls = 0;
 };
 
 // Where Newton's method stands between two of its steps (sim/statics/newton.hpp).

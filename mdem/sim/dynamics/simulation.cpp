@@ -13,6 +13,7 @@
 #include "sim/contact/shared/wrapped.hpp"
 #include "sim/device/device_stepper.hpp"
 #include "sim/dynamics/blow_up.hpp"
+#include "sim/dynamics/spins.hpp"
 #include "sim/dynamics/verlet.hpp"
 #include "sim/forces/kick.hpp"
 #include "sim/state/motion.hpp"
@@ -237,10 +238,7 @@ void Simulation::check_slip() const {
 
 // For [twist] with geometric_only.
 void Simulation::relax_spins_if_due() {
-  const double interval = loads_.spin_relaxation_interval();
-  if (interval <= 0) return;
-  const auto increments = [&](double time) { return std::floor(time / interval + 1e-9); };
-  if (increments(state_.time) == increments(state_.time - time_step_)) return;
+  if (!relaxes_spins_at(state_.time, time_step_, loads_.spin_relaxation_interval())) return;
   if (device_.stepper) device_.energies_missing = true;
   const double had = total_energy();
   sync_to_host();

@@ -35,7 +35,7 @@ struct MotionBound;
 inline constexpr double default_step_fraction = 0.6;
 inline constexpr double cold_step_fraction = 0.9;
 
-// nm, of the first list; the engine of a law may find a better one as the run goes.
+// Skin of the first list, nm; the engine of a law may find a better one during the run.
 inline double default_skin(const Interaction& in) { return in.law ? in.law->default_skin() : 0.15; }
 
 class Simulation {
@@ -191,7 +191,7 @@ class Simulation {
   void move_in_relaxation(double step);
   struct Motion;
   class Stiffness;
-  double farthest(const Motion& motion) const;  // nm, of an element, its turn at the largest radius
+  double farthest(const Motion& motion) const;  // largest displacement, nm; turns count at the largest radius
   Motion free_accelerations(const Motion& forces) const;
   double above_minimum(double enough, long most) const;
   std::optional<std::pair<Motion, double>> falling_motion(long most) const;
@@ -218,7 +218,7 @@ class Simulation {
   std::vector<Fastest> fastest_;  // fastest element of each cached_elements in the last drift
   ForceEngine engine_;
   Forces forces_;                       // with the loads
-  std::vector<PointLoad> point_loads_;  // those in the last forces: of the velocities in the middle of the step
+  std::vector<PointLoad> point_loads_;  // loads in forces_, which may depend on the velocities in the middle of the step
   EnergySupply account_;
   Relaxation relaxation_;
   Rest rest_;

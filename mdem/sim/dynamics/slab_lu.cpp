@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Eigen's products round as the number of threads has it.
+// Runs Eigen on one thread: its products round differently on another number of threads.
 struct OneThread {
   OneThread() { Eigen::setNbThreads(1); }
   ~OneThread() { Eigen::setNbThreads(0); }

@@ -62,7 +62,7 @@ double largest_eigenvalue(const Matrix6& m) { return eigenvalues(m)[5]; }
 // K and C of one wave over the masses; deflections x, y, z, then rotations.
 struct Wave {
   Matrix6 stiffness = Matrix6::Zero(), bond_damping = Matrix6::Zero(), contact_damping = Matrix6::Zero();
-  double term_damping = 0;  // 1/ps, of all deflections and rotations alike
+  double term_damping = 0;  // damping of all deflections and rotations alike, 1/ps
 
   double largest(double step) const {
     return largest_eigenvalue(step * step * stiffness + 2 * step * (bond_damping + contact_damping)) +
@@ -75,8 +75,8 @@ struct Lattice {
   const TubeType& type;
   BondDamping bond;
   double spacing = 0;    // nm
-  double stiffness = 0;  // eV/nm^2, of a neighbouring row
-  double held = 0;       // eV/nm^2, by force terms
+  double stiffness = 0;  // stiffness of a neighbouring row, eV/nm^2
+  double held = 0;       // stiffness by force terms, eV/nm^2
   double dragged = 0;    // 1/ps, likewise
   ContactViscosity viscosity;
 

@@ -248,7 +248,7 @@ Tangent tangent_of(const Simulation& simulation, double step) {
 
 Tangent tangent_with(const Simulation& simulation, const Tangent::Matrix& stiffness,
                      const Tangent::Matrix* damping) {
-  constexpr double step = 1e-5;  // nm, of the motion along which the error is found
+  constexpr double step = 1e-5;  // length of the motion along which the error is found, nm
   return Differences(simulation, step).tangent(&stiffness, damping);
 }
 

@@ -61,8 +61,8 @@ struct StateUpdate {
 
 // What a term has done since the start.
 struct TermAccount {
-  double lost = 0;    // eV, by its memory
-  double drag = 0;    // eV, by its dissipative forces
+  double lost = 0;    // energy lost by its memory, eV
+  double drag = 0;    // energy lost by its dissipative forces, eV
   double events = 0;  // a whole number
   double begun = 0;   // likewise
 
@@ -123,7 +123,7 @@ class ForceTerm {
   // them; one of them has its energy.
   virtual TermSum add(const State&, const Segment& /*part*/, const ForceRows&) const { return {}; }
 
-  // nm, of element centres: pairs that come nearer before the next list are in list_chunk; 0: the term has none.
+  // Distance of element centres, nm: pairs that come nearer before the next list are in list_chunk; 0: there are none.
   // At most the cutoff of the list. Without a contact law there are no chunks.
   virtual double pair_reach() const { return 0; }
   // nm: how far from an own element a process needs copies for this term, besides pair_reach().

@@ -20,8 +20,8 @@ struct Forces {
   Vec3Array force;   // eV/nm
   Vec3Array torque;  // eV, about the element centres, space frame
   Energies energy;
-  std::vector<double> term_energy;  // eV, of each of Interaction::terms
-  double lost = 0;                  // eV, by terms whose memory has moved on
+  std::vector<double> term_energy;  // energy of each of Interaction::terms, eV
+  double lost = 0;                  // energy lost by terms whose memory has moved on, eV
   double damping_power = 0;         // work per time of the damping forces, never positive, eV/ps
   int slipping_bond = -1;           // first element of a bond twisted by 90 degrees or more, -1: none
 

@@ -27,8 +27,8 @@ struct Interaction {
 
   bool has_contact() const { return law != nullptr; }
   bool damped_contact() const { return damping.contact.eta > 0; }
-  double cutoff() const;  // nm, of element centres: that of the law, or of the terms where they reach farther
-  double lever() const;   // nm, of the law; without one, zero
+  double cutoff() const;  // between element centres, nm: that of the law, or of the terms where they reach farther
+  double lever() const;   // lever of the law, nm; without one, zero
   // nm: elements of one tube with points nearer than this along it do not interact.
   double excluded_arc() const { return exclude_along_tube > 0 ? exclude_along_tube : cutoff(); }
   bool whole_ranges() const;
@@ -36,7 +36,7 @@ struct Interaction {
 
 struct Energies {
   double stretch = 0, shear = 0, bend = 0, twist = 0, vdw = 0;  // eV
-  double terms = 0;                                             // eV, of all force terms
+  double terms = 0;                                             // energy of all force terms, eV
   double bonds() const { return stretch + shear + bend + twist; }
   double potential() const { return bonds() + vdw + terms; }
 };

@@ -128,8 +128,8 @@ struct TubeGroups {
   // A slice of an endless rope: so many elements at each end of a strand are images of the elements one period away
   // (scene/ends/periodic.hpp). All strands have as many elements. 0: no slice.
   int images = 0;
-  double period = 0;          // nm, at the start
-  double period_inertia = 0;  // eV ps^2/nm^2, of its changes
+  double period = 0;          // period at the start, nm
+  double period_inertia = 0;  // inertia of its changes, eV ps^2/nm^2
   // Ropes that are plied: the first strand of each, and the number of strands. Empty: all are one rope.
   std::vector<int> rope_begin;
 };

@@ -30,6 +30,34 @@ double random_part(Eigen::Index k, std::uint32_t stream) {
   return 2 * unit_interval(philox({static_cast<std::uint32_t>(k), stream, 0, 0}, 4)[0]) - 1;
 }
 
+Vector3 centre_of(const State& s) {
+  Vector3 centre = Vector3::Zero();
+  for (std::size_t i = 0; i < s.size(); ++i) centre += s.position[i] / static_cast<double>(s.size());
+  return centre;
+}
+
+VectorXd move_of_whole(const State& s, const Vector3& along) {
+  VectorXd u(6 * static_cast<Eigen::Index>(s.size()));
+  for (Eigen::Index row = 0; row < u.size(); row += 6) u.segment<6>(row) << along, Vector3::Zero();
+  return u;
+}
+
+VectorXd turn_of_whole(const State& s, const Vector3& axis) {
+  const Vector3 centre = centre_of(s);
+  VectorXd u(6 * static_cast<Eigen::Index>(s.size()));
+  for (std::size_t i = 0; i < s.size(); ++i)
+    u.segment<6>(6 * static_cast<Eigen::Index>(i)) << axis.cross(Vector3(s.position[i] - centre)), axis;
+  return u;
+}
+
+// Whether nothing is left of the work of each element's load.
+bool cancels(const VectorXd& load, const VectorXd& motion) {
+  double sizes = 0;
+  for (Eigen::Index row = 0; row < load.size(); row += 6)
+    sizes += std::fabs(motion.segment<6>(row).dot(load.segment<6>(row)));
+  return std::fabs(motion.dot(load)) <= 1e-9 * sizes;
+}
+
 }  // namespace
 
 AllowedMotions::AllowedMotions(const Simulation& s)
@@ -243,26 +271,23 @@ void AllowedMotions::find_neutral(const VectorXd& internal) {
     }
     spins_[static_cast<std::size_t>(t)] = neutral && std::fabs(spin_of(t, internal)) <= 1e-6 * moments + 1e-9;
   }
-  Vector3 centre = Vector3::Zero();
-  for (std::size_t i = 0; i < state_.size(); ++i) centre += state_.position[i] / static_cast<double>(state_.size());
+  const Vector3 centre = centre_of(state_);
+  VectorXd any(mass_.size());
+  for (Eigen::Index k = 0; k < any.size(); ++k) any[k] = random_part(k, 3);
   const char* axes = "xyz";
   for (int k = 0; k < 6; ++k) {
     const Vector3 along = Vector3::Unit(k % 3);
-    VectorXd u = VectorXd::Zero(mass_.size());
+    const VectorXd u = k < 3 ? move_of_whole(state_, along) : turn_of_whole(state_, along);
     State there = state_;
     VectorXd expected = load;
     const Quaternion turn(Eigen::AngleAxisd(by, along));
     double sizes = 0;
     for (std::size_t i = 0; i < state_.size(); ++i) {
       const auto row = 6 * static_cast<Eigen::Index>(i);
-      const Vector3 arm = state_.position[i] - centre;
       if (k < 3) {
-        u.segment<3>(row) = along;
         there.position.add(i, by * along);
       } else {
-        u.segment<3>(row) = along.cross(arm);
-        u.segment<3>(row + 3) = along;
-        there.position.set(i, centre + turn * arm);
+        there.position.set(i, centre + turn * Vector3(state_.position[i] - centre));
         there.orientation.set(i, turn * state_.orientation[i]);
         expected.segment<3>(row) = turn * Vector3(load.segment<3>(row));
         expected.segment<3>(row + 3) = turn * Vector3(load.segment<3>(row + 3));
@@ -272,7 +297,13 @@ void AllowedMotions::find_neutral(const VectorXd& internal) {
     VectorXd free = u;
     constrain_motion(state_, free);
     if ((free - u).cwiseAbs().maxCoeff() > unmoved * u.cwiseAbs().maxCoeff()) continue;
-    if ((load_forces(loads_, there) - expected).cwiseAbs().maxCoeff() > unmoved * size) continue;
+    const bool turns_along = (load_forces(loads_, there) - expected).cwiseAbs().maxCoeff() <= unmoved * size;
+    const auto has_no_torque = [&](const State& at) {
+      return cancels(load_forces(loads_, at), turn_of_whole(at, along));
+    };
+    if (!turns_along &&
+        (k < 3 || !has_no_torque(state_) || !has_no_torque(there) || !has_no_torque(moved(state_, by * any))))
+      continue;
     if (std::fabs(u.dot(internal)) > 1e-6 * sizes + 1e-9) continue;
     Whole whole{u, u,
                 std::string(k < 3 ? "moves the whole scene along " : "turns the whole scene about ") + axes[k % 3]};

@@ -18,7 +18,11 @@
 // of the forces on all elements. P' of such a force is not the force again.
 //
 // Moves of the whole, its turns and spins of single tubes are neutral where constraints allow them, and where
-// neither loads nor terms feel them. They are taken out of motions and forces.
+// neither loads nor terms feel them. They are taken out of motions and forces. A turn is taken out as well
+// if the loads have no torque about its axis in any state, as couples of fixed direction at both ends have none
+// about x and y. Each tilt of the rope then has its own state of rest, and the angular momentum of a motion stays
+// zero. Without this the torques that spin tubes, which are taken out of the forces, leave a torque that tilts the
+// rope without end.
 //
 // Units nm, ps, eV, rad; vectors have six numbers for each element.
 #pragma once
@@ -33,7 +37,7 @@ namespace ropewalk {
 
 class AllowedMotions {
  public:
-  // At the state of the simulation.
+  // The motions that are allowed at the present state of the simulation.
   explicit AllowedMotions(const Simulation& s);
 
   // Mass of each unknown; images have none.
@@ -67,7 +71,7 @@ class AllowedMotions {
   double force_on_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd without_period(const Eigen::VectorXd& f) const;
   Eigen::VectorXd stretch() const;
-  // Makes it a motion in which the period stays.
+  // Takes the change of the period out of the motion.
   void let_period_stay(Eigen::VectorXd& u) const;
 
   // eV: the largest sum of the torques about its axis, of tubes whose spin is neutral.

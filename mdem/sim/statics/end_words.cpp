@@ -6,6 +6,11 @@
 #include <cmath>
 
 namespace ropewalk {
+namespace {
+
+constexpr double contacts_form = 0.05;  // eV/nm: larger forces after many steps are those of contacts that form
+
+}  // namespace
 
 std::string overloaded_bond(const Simulation& s) {
   constexpr double nearly_slipping = 80 * units::degree;
@@ -43,6 +48,10 @@ EndWords end_words(const Simulation& s, const Statics& end, bool by_fire, bool o
   if (end.end == Statics::End::interrupted) return {"it was stopped", ""};
   if (s.interaction().law && s.topology().tubes() > 1 && s.forces().energy.vdw == 0)
     return {"no two tubes touch", "start from tubes that touch"};
+  if (s.interaction().law && s.topology().tubes() > 1 && end.relaxed.force > contacts_form &&
+      end.newton_steps >= NewtonOptions().most)
+    return {"tubes may still be drawing together, by 0.15 nm a step at most",
+            "let them come together by mode = \"dynamics\" first, and begin with its final.csv ([state])"};
   return {
       fmt::format("{:.2g} eV/nm are left after {} steps of Newton's method", end.relaxed.force, end.newton_steps),
       ""};

@@ -37,7 +37,8 @@ Quaternion rotation_by(const Vector3& turn) {
 // A part of a step that was solved for.
 struct Attempt {
   double scale = 1;
-  double first = 0, end = 0, by_model = 0;  // eV: work of the force before it, after it, and after it by the tangent
+  double first = 0, end = 0,
+         by_model = 0;  // eV: work of the force before it, after it, and after it by the tangent
   bool taken = false;
   double disagreement() const { return std::fabs(end - by_model) / std::fabs(first); }
 };
@@ -291,7 +292,7 @@ VectorXd NewtonStatics::led(double passes) const {
 
 // The rest of the rope follows by (K + s M) d = f + change of the loads - K u, where constraints lead by u.
 bool NewtonStatics::follow_once(const At& at, double until) {
-  constexpr double least_shift = 0.01, most_shift = 100;  // 1/ps, of the root
+  constexpr double least_shift = 0.01, most_shift = 100;  // shift of the root, 1/ps
   double passes = until - s_.time();
   const VectorXd loads = load_forces(s_.loads(), s_.state());
   for (int tries = 0; tries < most_tries; ++tries) {
@@ -443,8 +444,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
         const double change = is_slice() ? -0.5 * (out.first + out.end) : energy_of(s_) - at.energy,
                      noise = 1e-10 * std::fabs(at.energy) + 1e-12;
         out.by_model = scale * (shift * scale * d.dot(at.allowed.mass().cwiseProduct(d)) + (1 - scale) * gain);
-        out.taken =
-            fine && change < -1e-4 * out.first + noise && out.end > -1.5 * std::fabs(out.first) - 1e-9;
+        out.taken = fine && change < -1e-4 * out.first + noise && out.end > -1.5 * std::fabs(out.first) - 1e-9;
         return out;
       };
       const double far = farthest(d);
@@ -461,8 +461,7 @@ Statics NewtonStatics::relax(const RelaxGoal& goal, long max_steps, const std::f
       pace = &s_.relaxation_with(goal);
       // What is left of forces at rest is rounding, which no model foresees.
       if ((step.disagreement() < 0.3 && step.scale > 0.3) || out_.relaxed.force < 1e-3 * goal.force)
-        pace->rate = std::max(options_.least_rate,
-                              pace->rate / 3);
+        pace->rate = std::max(options_.least_rate, pace->rate / 3);
       else if (step.end - step.by_model < -0.7 * std::fabs(step.first))
         pace->rate *= 2;
       if (pace->falling > 0 && pace->rate < 1.3 * pace->falling) {

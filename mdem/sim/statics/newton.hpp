@@ -34,7 +34,7 @@ struct NewtonOptions {
   int most = 1000;    // steps of Newton's method; no state of rest that was met needed a fifth of them
   // Steps with a bond beyond its window, one after the other, after which it ends; 0: any number.
   int most_overloaded = 0;
-  double farthest = 0.15;  // nm, of an element in a first try of a step; turns at the radius
+  double farthest = 0.15;  // displacement of an element in a first try of a step, nm; turns count at the radius
   double first_rate = 3;   // 1/ps: s = rate^2 at the start
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count

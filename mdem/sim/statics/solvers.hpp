@@ -56,7 +56,7 @@ class Preconditioner {
 
 struct Solution {
   int iterations = 0;
-  double residual = 0;     // relative, in the norm of the approximate inverse
+  double residual = 0;     // relative residual in the norm of the approximate inverse
   bool falls = false;      // a motion of negative curvature was met, or the solution points against b
   Eigen::VectorXd motion;  // that one, of conjugate gradients
 };

@@ -27,7 +27,7 @@ struct Statics;
 struct StabilityVerdict {
   enum class Kind { stable, unstable, unknown };
   Kind kind = Kind::unknown;
-  double growth = std::numeric_limits<double>::quiet_NaN();  // 1/ps, of the fastest motion; NaN: not known
+  double growth = std::numeric_limits<double>::quiet_NaN();  // growth rate of the fastest motion, 1/ps; NaN: not known
   double error = std::numeric_limits<double>::quiet_NaN();   // 1/ps: smaller rates cannot be told from zero
   std::string why = {};                                      // it is unknown
 

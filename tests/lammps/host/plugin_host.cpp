@@ -1,7 +1,8 @@
 // A LAMMPS with the part of the PLUGIN package that ours needs: opens the plugin and registers its styles.
 // Debian's LAMMPS lacks that package. First argument: the plugin; then those of LAMMPS. Each rank says at the end how
-// many bytes it has sent, and got by messages to all.
+// many bytes it has sent, and got by messages to all, in how many messages, and how many bytes it holds.
 #include <dlfcn.h>
+#include <malloc.h>
 #include <mpi.h>
 
 #include <cstdio>
@@ -34,12 +35,13 @@ void announce(Announced* style, void* handle) {
   if (kind == "fix") (*lmp->modify->fix_map)[style->name] = reinterpret_cast<Modify::FixCreator>(style->creator);
 }
 
-long long bytes = 0;
+long long bytes = 0, messages = 0;
 
 void count(long long numbers, MPI_Datatype type) {
   int size = 0;
   PMPI_Type_size(type, &size);
   bytes += numbers * size;
+  ++messages;
 }
 int ranks() {
   int all = 0;
@@ -78,12 +80,16 @@ int MPI_Allgather(const void* from, int n, MPI_Datatype t, void* into, int m, MP
 }
 int MPI_Allgatherv(const void* from, int n, MPI_Datatype t, void* into, const int* m, const int* at, MPI_Datatype u,
                    MPI_Comm c) {
-  for (int k = 0; k < ranks(); ++k) count(m[k], u);
+  long long all = 0;
+  for (int k = 0; k < ranks(); ++k) all += m[k];
+  count(all, u);
   return PMPI_Allgatherv(from, n, t, into, m, at, u, c);
 }
 int MPI_Alltoallv(const void* from, const int* n, const int* from_at, MPI_Datatype t, void* into, const int* m,
                   const int* at, MPI_Datatype u, MPI_Comm c) {
-  for (int k = 0; k < ranks(); ++k) count(n[k], t);
+  long long all = 0;
+  for (int k = 0; k < ranks(); ++k) all += n[k];
+  count(all, t);
   return PMPI_Alltoallv(from, n, from_at, t, into, m, at, u, c);
 }
 int MPI_Bcast(void* of, int n, MPI_Datatype t, int root, MPI_Comm c) {
@@ -104,10 +110,12 @@ int main(int argc, char** argv) {
   void* lmp = lammps_open(argc - 1, argv + 1, MPI_COMM_WORLD, nullptr);
   init(lmp, plugin, reinterpret_cast<void*>(&announce));
   static_cast<LAMMPS_NS::LAMMPS*>(lmp)->input->file();
+  const struct mallinfo2 heap = mallinfo2();
   lammps_close(lmp);
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  std::printf("rank %d: %lld bytes\n", rank, bytes);
+  std::printf("rank %d: %lld bytes, %lld messages, %lld bytes held\n", rank, bytes, messages,
+              static_cast<long long>(heap.uordblks + heap.hblkhd));
   std::fflush(stdout);
   MPI_Finalize();
   return 0;

@@ -1,4 +1,4 @@
-// The way back to the last good state, and the shorter steps from there on: run/rollback.hpp, run/step_control.hpp.
+// The way back to the last good state, and the shorter steps from there on: run/rollback.hpp, sim/dynamics/step_control.hpp.
 #include "run/rollback.hpp"
 
 #include <fmt/format.h>

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "model/contact/line_parameters.hpp"
-#include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
 
@@ -16,14 +15,17 @@ LineContact line_contact_of(const ParameterSet& set) {
   return {density, set.element_length, set.element_length, nodes, nodes};
 }
 
-PairIntegral surface_integral(const ParameterSet& set) {
+WallsIntegral surface_integral(const ParameterSet& set) {
   if (set.filament)
     throw NotApplicable("the oracle is the surface integral over the atoms of two tubes, and a filament has none");
   const UniversalLine& atoms = set.law<LineParameters>()->universal;
   const AtomLaw law{atoms.epsilon, atoms.sigma,
                     atoms.lj_cutoff > 0 ? atoms.lj_cutoff : std::numeric_limits<double>::infinity()};
-  const Shell shell{set.radius, set.law<LineParameters>()->surface_density};
-  return PairIntegral(law, shell, shell);
+  std::vector<Shell> shells;
+  for (const Wall& wall : set.walls)
+    shells.push_back({wall.radius, wall.atoms_per_length / (2 * units::pi * wall.radius)});
+  if (shells.empty()) shells.push_back({set.radius, set.law<LineParameters>()->surface_density});
+  return WallsIntegral(law, shells, shells);
 }
 
 Well pair_well(const ParameterSet& set) {
@@ -32,7 +34,7 @@ Well pair_well(const ParameterSet& set) {
   return {well.distance, well.energy};
 }
 
-double rope_energy(const PairIntegral& integral, int tubes, double spacing) {
+double rope_energy(const WallsIntegral& integral, int tubes, double spacing) {
   const auto places = hexagonal_lattice(tubes, spacing);
   double sum = 0;
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -41,12 +43,17 @@ double rope_energy(const PairIntegral& integral, int tubes, double spacing) {
   return sum;
 }
 
+void Bundle::place(const ParameterSet& set, int elements, const Places& places) {
+  BuiltScene built = straight_tubes(set, elements, places);
+  topology = std::move(built.topology);
+  state = std::move(built.state);
+}
+
 Bundle line_bundle(const ParameterSet& set, int tubes, int elements) {
   Bundle b;
-  b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
   b.spacing = line_parallel_well(set.law<LineParameters>()->density).distance;
-  add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
+  b.place(set, elements, hexagonal_lattice(tubes, b.spacing));
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;
 }

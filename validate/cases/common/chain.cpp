@@ -6,20 +6,15 @@
 #include <cmath>
 #include <utility>
 
+#include "cases/common/straight_tubes.hpp"
 #include "model/error.hpp"
 
 namespace ropewalk::validate {
 
-Topology topology_of(const ParameterSet& set) {
-  Topology topology;
-  const double a = set.element_length;
-  topology.types = {{a, set.radius, set.element_mass(a), set.element_inertia(a), set.bond}};
-  return topology;
-}
-
-Chain::Chain(const ParameterSet& set, int bonds)
-    : topology(topology_of(set)), state(static_cast<std::size_t>(bonds + 1)), last(bonds) {
-  topology.add_tube(bonds + 1);
+Chain::Chain(const ParameterSet& set, int bonds) : last(bonds) {
+  BuiltScene tube = straight_tubes(set, bonds + 1);
+  topology = std::move(tube.topology);
+  state = std::move(tube.state);
   for (int i = 0; i <= bonds; ++i) state.position.set(static_cast<std::size_t>(i), {0, 0, i * set.element_length});
 }
 
@@ -120,9 +115,8 @@ double lowest_under_load(const ParameterSet& set, int bonds, double load) {
 
 void refuse_slip(const ParameterSet& set, double moment) {
   if (moment * set.element_length < 0.9 * set.bond.twist) return;
-  throw NotApplicable(
-      fmt::format("GJ is {:.2g} of EI: a bond of {:.3g} nm slips in twist before the chain buckles",
-                  set.bond.twist / set.bond.bend, set.element_length));
+  throw NotApplicable(fmt::format("GJ is {:.2g} of EI: a bond of {:.3g} nm slips in twist before the chain buckles",
+                                  set.bond.twist / set.bond.bend, set.element_length));
 }
 
 double buckling_load(const ParameterSet& set, int bonds, double expected) {

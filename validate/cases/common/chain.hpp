@@ -16,9 +16,6 @@
 
 namespace ropewalk::validate {
 
-// One tube type, element length and mass as the set says; no tubes yet.
-Topology topology_of(const ParameterSet& set);
-
 // One straight tube along z with its first element at the origin.
 struct Chain {
   Topology topology;
@@ -55,11 +52,12 @@ double lowest_eigenvalue(const Eigen::MatrixXd& stiffness);
 // The zero of a falling function, by bisection.
 double zero_between(const std::function<double(double)>& falling, double low, double high);
 
-// Throws NotApplicable where the bonds of the set slip near this moment (eV), so that no chain of them buckles by it.
+// Throws NotApplicable where the bonds of the set slip near this moment (eV), so that no chain of them buckles by
+// it.
 void refuse_slip(const ParameterSet& set, double moment);
 
-// The load (eV/nm) under which a straight chain of so many bonds buckles, its ends on the axis and free to turn; sought
-// from half of `expected` to 2.5 times it.
+// The load (eV/nm) under which a straight chain of so many bonds buckles, its ends on the axis and free to turn;
+// sought from half of `expected` to 2.5 times it.
 double buckling_load(const ParameterSet& set, int bonds, double expected);
 
 }  // namespace ropewalk::validate

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "sim/contact/line/law.hpp"
 
@@ -11,10 +10,12 @@ namespace ropewalk::validate {
 
 GrippedRope::GrippedRope(const ParameterSet& set, int bonds_, std::shared_ptr<const ContactLaw> law,
                          double spacing_, int held_)
-    : topology(topology_of(set)), bonds(bonds_), held(held_), spacing(spacing_) {
+    : bonds(bonds_), held(held_), spacing(spacing_) {
   interaction.law = std::move(law);
   const int elements = elements_of_tube();
-  add_straight_tubes(hexagonal_lattice(tubes, spacing), elements, set.element_length, topology, state);
+  BuiltScene rope = straight_tubes(set, elements, hexagonal_lattice(tubes, spacing));
+  topology = std::move(rope.topology);
+  state = std::move(rope.state);
   for (int i = 0; i < topology.elements(); ++i) {
     if (i % elements < held) lower.push_back(i);
     if (i % elements >= elements - held) upper.push_back(i);

@@ -31,7 +31,7 @@ struct GrippedRope {
   void turn(double angle);
   // To rest between the grips, until the largest force is below `tolerance` (eV/nm).
   void relax(double tolerance);
-  double moment() const;  // eV, on the upper grip
+  double moment() const;  // moment on the upper grip, eV
 };
 
 }  // namespace ropewalk::validate

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cases/common/chain.hpp"
+#include "cases/common/straight_tubes.hpp"
 
 namespace ropewalk::validate {
 
@@ -36,8 +37,7 @@ double ParallelBond::energy(const Vector3& separation) const {
 }
 
 double parallel_bond_deflection(const ParameterSet& set, int bonds, double force) {
-  const Topology topology = topology_of(set);
-  const TubeType& type = topology.types[0];
+  const TubeType type = straight_tubes(set, 1).topology.types[0];
   const auto n = static_cast<std::size_t>(bonds) + 1;
   const double length = bonds * type.element_length;
   // Aperiodic for the slowest mode, 3.516 sqrt(EI/mu)/L^2.

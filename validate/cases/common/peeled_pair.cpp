@@ -23,8 +23,7 @@ void open_arm(double opening, double crack, double side, const ParameterSet& set
 
 Peel peel(const ParameterSet& set, double opening, double crack) {
   Bundle b = line_bundle(set, 1, peeled_elements);
-  b.topology.add_tube(peeled_elements);
-  b.state = State(static_cast<std::size_t>(2 * peeled_elements));
+  b.place(set, peeled_elements, {{-0.5 * b.spacing, 0}, {0.5 * b.spacing, 0}});
   LoadsAndConstraints loads;
   for (int t = 0; t < 2; ++t) {
     const double side = t == 0 ? -1 : 1;

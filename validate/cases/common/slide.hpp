@@ -1,14 +1,12 @@
 // Long parallel rows of elements or beads that slide along one another: mean energy and corrugation.
 #pragma once
 
-#include <utility>
 #include <vector>
 
+#include "cases/common/straight_tubes.hpp"
 #include "sim/contact/contact_law.hpp"
 
 namespace ropewalk::validate {
-
-using Places = std::vector<std::pair<double, double>>;  // nm, of the rows across their axis
 
 struct Slide {
   std::vector<double> shift, energy;  // in elements, both ends of the period included; eV/nm

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cases/common/scene_of_case.hpp"
 #include "model/contact/line_parameters.hpp"
 #include "observe/loading.hpp"
-#include "scene/kinds/scene_kind.hpp"
-#include "scene/lattice.hpp"
 #include "scene/prepare.hpp"
-#include "scene/scene_toml.hpp"
+#include "scene/spacing.hpp"
 #include "sim/state/uniform_chain.hpp"
 
 namespace ropewalk::validate {
@@ -70,23 +69,17 @@ double side_by_side(const ContactLaw& law, double element, double distance) {
 }  // namespace
 
 RopeInMachine::RopeInMachine(const ParameterSet& with, int count, int elements) : set(with), tubes(count) {
-  Scene scene = scene_of_text(
-      fmt::format(
-          "format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[rope]\ntubes = 7\nlength_nm = {}\n[run]\nmode = "
-          "\"relax\"\n",
-          with.path, elements * with.element_length),
-      "");
-  scene.sets = {with};
+  const std::string length_of_tubes = fmt::to_string(elements * with.element_length);
+  Scene scene = scene_of_case("torsion-machine", with, {{"rope.length_nm", length_of_tubes}});
+  spacing = parallel_spacing(scene, contact_law(scene).get());
+  ChangedValues tubes_in_it = {{"rope.length_nm", length_of_tubes}, {"rope.tubes", fmt::to_string(count)}};
+  if (count == 2)
+    tubes_in_it.emplace_back("rope.places_nm", fmt::format("[[{}, 0], [{}, 0]]", -0.5 * spacing, 0.5 * spacing));
+  scene = scene_of_case("torsion-machine", with, tubes_in_it);
   const Prepared p = prepare(scene);
-  topology = empty_topology(scene);
+  topology = p.topology;
   interaction = p.interaction;
-  spacing = p.spacing;
-  const std::vector<std::pair<double, double>> pair = {{-0.5 * spacing, 0}, {0.5 * spacing, 0}};
-  State start;
-  add_straight_tubes(count == 2 ? pair : hexagonal_lattice(count, spacing), elements, with.element_length, topology,
-                     start);
-  set_collapse(scene, topology);
-  const Simulation s = relaxed(*this, start, true, false, p.time_step);
+  const Simulation s = relaxed(*this, p.state, true, false, p.time_step);
   straight_ = s.state();
   straight_energy_ = s.forces().energy.potential();
   length = apart(topology, straight_);

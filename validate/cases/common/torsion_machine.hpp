@@ -51,16 +51,16 @@ struct RopeInMachine {
   Interaction interaction;
   double spacing = 0;            // nm
   double length = 0;             // nm, between the clamps, relaxed
-  std::vector<double> radii;     // nm, of the tubes
-  std::vector<double> cohesion;  // eV/nm, of the tubes
+  std::vector<double> radii;     // radii of the tubes, nm
+  std::vector<double> cohesion;  // cohesion of the tubes, eV/nm
   double modulus = 0;            // eV/nm^3, Y of the lattice
 
   // Two tubes side by side, or a hexagonal number.
   RopeInMachine(const ParameterSet& set, int tubes, int elements);
-  double bonded() const { return (topology.length_of(0) - 1) * set.element_length; }  // nm, of each tube
-  double outer_radius() const;                                                        // nm, of the outermost axes
-  double cell() const { return 0.5 * std::sqrt(3.0) * spacing * spacing; }            // nm^2, of each tube
-  double disc_radius() const { return std::sqrt(tubes * cell() / units::pi); }        // nm, of the cross-section
+  double bonded() const { return (topology.length_of(0) - 1) * set.element_length; }  // bonded length of each tube, nm
+  double outer_radius() const;                                                        // distance of the outermost axes from the middle, nm
+  double cell() const { return 0.5 * std::sqrt(3.0) * spacing * spacing; }            // area of each tube, nm^2
+  double disc_radius() const { return std::sqrt(tubes * cell() / units::pi); }        // radius of the cross-section, nm
   double twist_at(double angle) const;  // rad/nm, where the outermost tubes lean by this angle
 
   // With the spins of all tubes held in the clamps or free.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/checks.hpp"
+
 namespace ropewalk::validate {
 namespace {
 
@@ -176,6 +178,26 @@ void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, 
   check.informative = true;
   check.note = note;
   result.checks.push_back(check);
+}
+
+Case tube_curve_case(const std::string& name, double tolerance,
+                     ReferenceTable (*make)(const CaseContext&, const ParameterSet&),
+                     void (*compare)(const CaseTube&, const ReferenceTable&, CaseResult&)) {
+  Case c;
+  c.name = name;
+  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
+  c.law = Case::Law::none;
+  c.tables = {name};
+  c.run = [=](const CaseContext& context) {
+    CaseResult result;
+    for (const CaseTube& tube : context.tubes())
+      compare(tube,
+              reference(
+                  context, tube.set, name, tolerance, [&] { return make(context, tube.set); }, result),
+              result);
+    return result;
+  };
+  return c;
 }
 
 double lammps_seconds(const ParameterSet& set, double length, double relaxations) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/common/lammps_session.hpp"
+#include "core/reference.hpp"
 #include "sim/state/uniform_chain.hpp"
 
 namespace ropewalk::validate {
@@ -40,6 +41,12 @@ std::size_t points_before_break(const std::vector<double>& amplitude, const std:
 // Adds the amplitude of a collapse, for information.
 void add_collapse(const TubeCurve& curve, const std::vector<double>& amplitude, std::size_t points,
                   const std::string& note, CaseResult& result);
+
+// A case that holds (5,5) and (10,10) tubes, or others, to the stored table of its name, which LAMMPS makes again within
+// `tolerance`; `compare` does so for one tube.
+Case tube_curve_case(const std::string& name, double tolerance,
+                     ReferenceTable (*make)(const CaseContext&, const ParameterSet&),
+                     void (*compare)(const CaseTube&, const ReferenceTable&, CaseResult&));
 
 // About how long LAMMPS takes for `relaxations` of `length` nm of tube, s of one core (Tersoff).
 double lammps_seconds(const ParameterSet& set, double length, double relaxations);

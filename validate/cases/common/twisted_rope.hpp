@@ -25,6 +25,7 @@
 #include "core/case.hpp"
 #include "core/reference.hpp"
 #include "model/bond.hpp"
+#include "model/contact/line_parameters.hpp"
 
 namespace ropewalk::validate {
 
@@ -73,7 +74,7 @@ struct TwistedState {
   double tubes = 0, vdw = 0;   // within and between tubes
   double moment = 0;           // eV
   double force = 0, rise = 0;  // eV/nm, nm
-  double bending = 0;          // eV, of `tubes`; of elements only
+  double bending = 0;          // bending part of `tubes`, eV; elements have it alone
 };
 std::vector<TwistedState> states_of(const ReferenceTable& table, bool axial_free);
 std::vector<TwistedState> twist_elements(const TwistedRope& rope, const ParameterSet& set,

@@ -91,7 +91,7 @@ struct LineBuffers {
   using C = C_;
   using T = typename Table::Value;
   std::vector<PairTables<Table>> pairs;
-  double unit = 0;  // nm, of the tables
+  double unit = 0;  // unit of the tables, nm
   // One for each thread, for the chunk that it works on.
   std::vector<NodePositions<C>> nodes;
   std::vector<LineWork<T>> work;

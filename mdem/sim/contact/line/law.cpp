@@ -33,7 +33,7 @@ double LineLaw::lever() const {
 
 bool LineLaw::reaches(TypePair types, const Vector3& separation, const Vector3& n_i, const Vector3& n_j) const {
   const LineContact& law = of(types);
-  const double reach = law.density.cutoff() + 1e-6;  // nm, for the rounding of the distance
+  const double reach = law.density.cutoff() + 1e-6;  // the cutoff and a margin for the rounding of the distance, nm
   return squared_segment_distance(separation, n_i, n_j, 0.5 * law.length_i, 0.5 * law.length_j) < reach * reach;
 }
 

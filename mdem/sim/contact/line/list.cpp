@@ -36,7 +36,7 @@ struct SpanFinder {
   const Topology& topology;
   const Interaction& in;
   const NeighbourList& list;
-  double near_reach;  // nm, of other work on pairs; 0: there is none
+  double near_reach;  // reach of other work on pairs, nm; 0: there is none
   int i, tube_i, tube_j;
   const LineContact& law;
   double half_i, half_j;

@@ -98,7 +98,7 @@ class LineList {
 
   std::vector<int> nodes_per_element_;  // count for each tube type
   std::vector<NeighbourSpan> spans_;
-  std::vector<std::size_t> begin_;  // first span of each element, and the end of the last one's
+  std::vector<std::size_t> begin_;  // first span of each element; last: the number of spans
   std::vector<LineChunk> chunks_;
   LineChunk largest_;  // its sizes alone
   double unit_ = 1;

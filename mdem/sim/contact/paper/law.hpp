@@ -38,7 +38,7 @@ double pair_spacing(const PaperContact& contact, double element_length);
 
 // The wells of two long tubes in elements of this length.
 struct PaperWells {
-  double spacing = 0, parallel = 0;                    // nm and eV/nm, of parallel ones at rest
+  double spacing = 0, parallel = 0;                    // spacing (nm) and energy (eV/nm) of parallel elements at rest
   double crossed_deepest = 0, crossed_shallowest = 0;  // eV at a right angle: it depends on where along their
                                                        // elements the tubes cross
 };

@@ -77,7 +77,7 @@ class ContactViscosityTerm : public ForceTerm {
   };
 
   ContactViscosity viscosity_;
-  double unit_ = 1;  // nm, of positions in single precision
+  double unit_ = 1;  // unit of positions in single precision, nm
   std::vector<Chunk> chunks_;
 };
 

@@ -16,7 +16,7 @@ namespace ropewalk {
 namespace {
 
 constexpr double forming_interval = 1;               // ps
-constexpr double rounding = 1e-9;                    // ps, of sums of steps
+constexpr double rounding = 1e-9;                    // rounding error of sums of steps, ps
 constexpr std::uint32_t room_question = 0xFFFFFFFF;  // a number k of drawn() that no link takes
 
 // --- where tubes face each other -----------------------------------------------------------------------

@@ -9,13 +9,13 @@ namespace ropewalk {
 namespace {
 
 // Two ends that meet: their elements and their contact.
-struct Joint {
+struct EndJoint {
   int below = 0, above = 0;
-  double half_below = 0, half_above = 0;  // nm, of the elements
+  double half_below = 0, half_above = 0;  // half lengths of the elements, nm
   std::size_t contact = 0;
 };
 
-struct JointForce {
+struct EndJointForce {
   double energy = 0;
   Vector3 force_above = Vector3::Zero();  // minus that below
   Vector3 torque_below = Vector3::Zero(), torque_above = Vector3::Zero();
@@ -47,7 +47,7 @@ class TubeEnds : public ForceTerm {
     for (std::size_t i = 0; i + 1 < number.size(); ++i) {
       if (number[i] + 1 != number[i + 1]) continue;
       const auto joint = std::lower_bound(joints_.begin(), joints_.end(), number[i],
-                                          [](const Joint& j, int below) { return j.below < below; });
+                                          [](const EndJoint& j, int below) { return j.below < below; });
       if (joint == joints_.end() || joint->below != number[i]) continue;
       here_.push_back(*joint);
       here_.back().below = static_cast<int>(i);
@@ -62,9 +62,9 @@ class TubeEnds : public ForceTerm {
     const auto row = [&](int i) { return static_cast<std::size_t>(i - out.origin); };
     // Joints rise with their elements; that of the element before the part has its first one above.
     auto joint = std::lower_bound(here_.begin(), here_.end(), static_cast<int>(part.begin),
-                                  [](const Joint& j, int i) { return j.above < i; });
+                                  [](const EndJoint& j, int i) { return j.above < i; });
     for (; joint != here_.end() && joint->below < part.end; ++joint) {
-      const JointForce f = force_of(*joint, state);
+      const EndJointForce f = force_of(*joint, state);
       if (within(joint->below)) {
         out.force.add(row(joint->below), -f.force_above);
         out.torque.add(row(joint->below), f.torque_below);
@@ -79,9 +79,9 @@ class TubeEnds : public ForceTerm {
   }
 
   bool add_tangent(const State& state, const AddBlock& add) const override {
-    for (const Joint& joint : here_) {
+    for (const EndJoint& joint : here_) {
       const auto forces = [&](const Pose& below, const Pose& above) {
-        const JointForce f = force_of(joint, below, above);
+        const EndJointForce f = force_of(joint, below, above);
         return PairVector(
             (PairVector() << -f.force_above, f.torque_below, f.force_above, f.torque_above).finished());
       };
@@ -101,19 +101,19 @@ class TubeEnds : public ForceTerm {
     return joints_.empty() ? 0 : 2 * most;
   }
 
-  std::size_t bytes() const override { return (joints_.size() + here_.size()) * sizeof(Joint); }
+  std::size_t bytes() const override { return (joints_.size() + here_.size()) * sizeof(EndJoint); }
 
  private:
-  JointForce force_of(const Joint& joint, const State& state) const {
+  EndJointForce force_of(const EndJoint& joint, const State& state) const {
     return force_of(joint, pose_of(state, joint.below), pose_of(state, joint.above));
   }
-  JointForce force_of(const Joint& joint, const Pose& below, const Pose& above) const {
+  EndJointForce force_of(const EndJoint& joint, const Pose& below, const Pose& above) const {
     const EndContact& contact = contacts_[joint.contact];
     const Vector3 t_i = axis_of(below.orientation), t_j = axis_of(above.orientation);
     const Vector3 arm_i = joint.half_below * t_i, arm_j = -joint.half_above * t_j;
     const Vector3 d = above.position + arm_j - below.position - arm_i, both = t_i + t_j;
     const double length = both.norm();
-    JointForce out;
+    EndJointForce out;
     if (!(length > 0.1)) return out;  // they point against each other
     const Vector3 n = both / length;
     const double s = d.dot(n), width2 = contact.width() * contact.width();
@@ -132,8 +132,8 @@ class TubeEnds : public ForceTerm {
   }
 
   std::vector<EndContact> contacts_;
-  std::vector<Joint> joints_;  // joints of the scene
-  std::vector<Joint> here_;    // joints of this process, by its own numbers of elements
+  std::vector<EndJoint> joints_;  // joints of the scene
+  std::vector<EndJoint> here_;    // joints of this process, by its own numbers of elements
 };
 
 }  // namespace

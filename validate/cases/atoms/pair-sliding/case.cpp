@@ -23,7 +23,7 @@ constexpr int turns = 4, shifts = 24;
 constexpr double cell = 1.2;           // nm, least length
 constexpr double longest_slide = 0.5;  // nm: the period of chiral tubes is longer
 constexpr int registry_count = 12;
-constexpr double free_length = 8;        // nm, of the tubes that are pulled
+constexpr double free_length = 8;        // free length of the tubes that are pulled, nm
 constexpr double registry_shift = 0.25;  // nm: the period of armchair tubes
 constexpr double first_overlap = 0.5, overlap_step = 0.5, max_overlap = 7.5;
 constexpr double fit_from = 2, fit_to = 6;  // nm: without the influence of the ends
@@ -186,7 +186,7 @@ Straight fit_straight(const std::vector<double>& x, const std::vector<double>& y
 // have
 //   energy of the model - energy of shells = int_s^inf (t - s) (w_shells(t) - w_model(t)) dt.
 struct FlushEnds {
-  double energy = 0;  // eV, at s = 0
+  double energy = 0;  // energy at s = 0, eV
   double force = 0;   // eV/nm, the largest one by s
 };
 FlushEnds flush_ends(const ParameterSet& set, double distance) {

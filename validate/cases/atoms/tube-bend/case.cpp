@@ -16,7 +16,7 @@ namespace {
 
 // Other lengths than those that the stiffness was fitted to.
 constexpr double short_length = 8, long_length = 14;        // nm
-constexpr double step = 0.0025, most = 0.06, kink = 0.044;  // nm, of curvature times radius squared
+constexpr double step = 0.0025, most = 0.06, kink = 0.044;  // curvature times radius squared, nm
 constexpr double end_band = 0.6;  // nm, held beyond either end, where a table does not say
 constexpr double max_turn = 5.6;  // rad, between the ends of a specimen with its bands; they meet at a larger turn
 
@@ -127,30 +127,19 @@ TubeCurve curve_of(const CaseTube& tube, const ReferenceTable& data, CaseResult&
   return curve;
 }
 
-CaseResult run(const CaseContext& context) {
-  CaseResult result;
-  for (const CaseTube& tube : context.tubes()) {
-    const ReferenceTable data = reference(
-        context, tube.set, "tube-bend", 0.02, [&] { return make_reference(context, tube.set); }, result);
-    const TubeCurve curve = curve_of(tube, data, result);
-    add_curve(curve, result);
-    add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
-                 "the specimen that kinks first, against the kink curvature of the set", result);
-  }
-  return result;
+void compare(const CaseTube& tube, const ReferenceTable& data, CaseResult& result) {
+  const TubeCurve curve = curve_of(tube, data, result);
+  add_curve(curve, result);
+  add_collapse(curve, curve.more_amplitude, curve.amplitude.size(),
+               "the specimen that kinks first, against the kink curvature of the set", result);
 }
 
 const RegisteredCase registered([] {
-  Case c;
-  c.name = "tube-bend";
+  Case c = tube_curve_case("tube-bend", 0.02, make_reference, compare);
   c.order = 30;
-  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
-  c.law = Case::Law::none;
-  c.tables = {"tube-bend"};
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, short_length + long_length, most / step);
   };
-  c.run = run;
   c.turns_red = {wrong_EI(1.1)};
   c.stays_green = {wrong_EA(1.1), wrong_GJ(0.9), wrong_contact(2)};
   return c;

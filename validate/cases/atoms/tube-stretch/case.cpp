@@ -79,38 +79,27 @@ double stretch_of_untwisted(const ParameterSet& set, double twist, double strain
   return (energy(rest + (1 + rest) * strain) - energy(rest)) / (1 + rest);
 }
 
-CaseResult run(const CaseContext& context) {
-  CaseResult result;
-  for (const CaseTube& tube : context.tubes()) {
-    const ReferenceTable data = reference(
-        context, tube.set, "tube-stretch", 0.01, [&] { return make_reference(context, tube.set); }, result);
-    TubeCurve curve;
-    curve.tube = tube.name;
-    curve.amplitude_name = "strain";
-    curve.amplitude = data.column("strain");
-    curve.atoms = data.column("energy_eV_per_nm");
-    curve.model = [set = tube.model, twist = -natural_twist(tube.set)](double strain) {
-      return stretch_of_untwisted(set, twist, strain);
-    };
-    curve.window = curve.end = tube.set.validity.stretch;
-    add_buckling(curve, result);
-    end_at_collapse(curve);
-    add_curve(curve, result);
-  }
-  return result;
+void compare(const CaseTube& tube, const ReferenceTable& data, CaseResult& result) {
+  TubeCurve curve;
+  curve.tube = tube.name;
+  curve.amplitude_name = "strain";
+  curve.amplitude = data.column("strain");
+  curve.atoms = data.column("energy_eV_per_nm");
+  curve.model = [set = tube.model, twist = -natural_twist(tube.set)](double strain) {
+    return stretch_of_untwisted(set, twist, strain);
+  };
+  curve.window = curve.end = tube.set.validity.stretch;
+  add_buckling(curve, result);
+  end_at_collapse(curve);
+  add_curve(curve, result);
 }
 
 const RegisteredCase registered([] {
-  Case c;
-  c.name = "tube-stretch";
+  Case c = tube_curve_case("tube-stretch", 0.01, make_reference, compare);
   c.order = 10;
-  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
-  c.law = Case::Law::none;
-  c.tables = {"tube-stretch"};
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, cell_length, 2 * std::size(magnitudes));
   };
-  c.run = run;
   c.turns_red = {wrong_EA(1.1)};
   c.stays_green = {wrong_GJ(0.9), wrong_EI(1.1), wrong_contact(2)};
   return c;

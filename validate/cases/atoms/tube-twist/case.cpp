@@ -124,31 +124,20 @@ void add_beyond(const TubeCurve& curve, CaseResult& result) {
   if (!worst.note.empty()) result.checks.push_back(worst);
 }
 
-CaseResult run(const CaseContext& context) {
-  CaseResult result;
-  for (const CaseTube& tube : context.tubes()) {
-    const ReferenceTable data = reference(
-        context, tube.set, "tube-twist", 0.02, [&] { return make_reference(context, tube.set); }, result);
-    const TubeCurve curve = curve_of(tube, data);
-    add_collapse_of_sense(curve, 1, result);
-    if (tube.set.chirality.chiral()) add_collapse_of_sense(curve, -1, result);
-    add_curve(curve, result);
-    if (curve.window < curve.end) add_beyond(curve, result);
-  }
-  return result;
+void compare(const CaseTube& tube, const ReferenceTable& data, CaseResult& result) {
+  const TubeCurve curve = curve_of(tube, data);
+  add_collapse_of_sense(curve, 1, result);
+  if (tube.set.chirality.chiral()) add_collapse_of_sense(curve, -1, result);
+  add_curve(curve, result);
+  if (curve.window < curve.end) add_beyond(curve, result);
 }
 
 const RegisteredCase registered([] {
-  Case c;
-  c.name = "tube-twist";
+  Case c = tube_curve_case("tube-twist", 0.02, make_reference, compare);
   c.order = 20;
-  c.sets = {"cnt-5-5-tersoff", "cnt-10-10-tersoff"};
-  c.law = Case::Law::none;
-  c.tables = {"tube-twist"};
   c.lammps_seconds = [](const ParameterSet& set) {
     return lammps_seconds(set, 2 * shortest_cell, static_cast<double>(shears(set.chirality).size()));
   };
-  c.run = run;
   c.turns_red = {wrong_GJ(0.9)};
   c.stays_green = {wrong_EA(1.1), wrong_EI(1.1), wrong_contact(2)};
   return c;

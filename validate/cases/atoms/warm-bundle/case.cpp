@@ -29,7 +29,7 @@ namespace {
 constexpr double spacing_tolerance = 0.005;  // registry, and lj/cut forces
 constexpr double energy_tolerance = 0.03;    // registry, as in the pairs
 constexpr double change_tolerance =
-    0.3;  // relative, for expansion and loss of cohesion, plus three standard errors
+    0.3;  // relative tolerance of expansion and loss of cohesion, beside three standard errors
 constexpr double temperature_tolerance = 2;  // K
 constexpr double fresh_tolerance = 0.15;     // of a column's range: another machine has another trajectory
 

@@ -36,9 +36,9 @@ constexpr double fresh_tolerance = 0.5;
 constexpr double temperature = 300, warming = 5, settling = 1;  // K, ps
 constexpr double md_step = 0.001, sampled_every = 0.1;          // ps
 constexpr double length = 6, band = 0.5;                        // nm
-constexpr double drawn = 1.2;      // nm, by which the middle tube is out at the start: flush ends bind less
-constexpr double period = 0.2495;  // nm, of the lattice along armchair tubes
-constexpr double corrugation_period = 0.2536;  // nm, of the law of friction of (5,5)
+constexpr double drawn = 1.2;      // how far the middle tube is out at the start, nm: flush ends bind less
+constexpr double period = 0.2495;  // period of the lattice along armchair tubes, nm
+constexpr double corrugation_period = 0.2536;  // period of the law of friction of (5,5), nm
 
 struct Motion {
   bool unlike = false, spins = false;

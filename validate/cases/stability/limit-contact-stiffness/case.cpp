@@ -7,7 +7,6 @@
 #include "cases/common/bundle.hpp"
 #include "cases/common/stability_limit.hpp"
 #include "model/contact/paper.hpp"
-#include "scene/kinds/scene_kind.hpp"
 #include "scene/lattice.hpp"
 #include "scene/random.hpp"
 #include "sim/contact/paper/law.hpp"
@@ -40,10 +39,9 @@ Bundle packed(const Series& s, ParameterSet set, double factor) {
   scale_contact(set, factor);
   if (!s.paper) return line_bundle(set, tubes, elements);
   Bundle b;
-  b.topology = topology_of(set);
   b.interaction.law = paper_law(*set.law<PaperContact>());
   b.spacing = pair_spacing(*set.law<PaperContact>(), set.element_length);
-  add_straight_tubes(hexagonal_lattice(tubes, b.spacing), elements, set.element_length, b.topology, b.state);
+  b.place(set, elements, hexagonal_lattice(tubes, b.spacing));
   b.time_step = default_step_fraction * time_step_limit(b.topology, b.interaction, b.spacing).limit;
   return b;
 }

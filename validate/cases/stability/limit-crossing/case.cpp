@@ -27,10 +27,9 @@ using Path = std::function<EnergyAndSlope(double)>;
 class RigidTubes {
  public:
   RigidTubes(const ParameterSet& set, Interaction interaction, int elements)
-      : in_(std::move(interaction)), topology_(topology_of(set)), elements_(elements) {
-    topology_.add_tube(elements);
-    topology_.add_tube(elements);
-  }
+      : in_(std::move(interaction)),
+        topology_(straight_tubes(set, elements, {{0, 0}, {0, 0}}).topology),
+        elements_(elements) {}
 
   // The first tube lies along z. The second has its centre at `centre` and its axis at `angle` to z in the plane of
   // y and z.

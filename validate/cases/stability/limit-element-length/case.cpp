@@ -100,12 +100,12 @@ CaseFigure bending_figure(const CaseContext& context) {
 // Energy (eV) of one element beside a long row, shifted along it.
 class Slide {
  public:
-  Slide(Interaction interaction, double element_length, double distance)
+  Slide(Interaction interaction, ParameterSet set, double element_length, double distance)
       : in_(std::move(interaction)), a_(element_length), distance_(distance) {
-    topology_.types = {{a_, 0.5, 1, 1, {}}};
+    set.element_length = element_length;
+    topology_ = straight_tubes(set, 1).topology;
     reach_ = static_cast<int>(in_.cutoff() / a_) + 2;
-    topology_.add_tube(1);
-    topology_.add_tube(2 * reach_ + 1);
+    topology_.add_tube(2 * reach_ + 1);  // no scene has a tube and a longer row beside it
   }
   double energy(double shift) const {
     State s(static_cast<std::size_t>(topology_.elements()));
@@ -143,13 +143,13 @@ double line_corrugation(const ParameterSet& set, double spacing, double distance
   Interaction in;
   const double a = nodes * spacing;
   in.law = line_law({{set.law<LineParameters>()->density, a, a, nodes, nodes}});
-  return Slide(in, a, distance).corrugation(spacing);
+  return Slide(in, set, a, distance).corrugation(spacing);
 }
 
 double paper_corrugation(const ParameterSet& set, double length, double distance) {
   Interaction in;
   in.law = paper_law(*set.law<PaperContact>());
-  return Slide(in, length, distance).corrugation(length);
+  return Slide(in, set, length, distance).corrugation(length);
 }
 
 // Poisson's summation formula: the energy of a row of period d has the Fourier transform F of one pair's energy at

@@ -18,11 +18,8 @@ constexpr double time_step = 0.02;  // ps
 // Two elements in one line, just out of range of each other, that approach or turn.
 Bundle nose_to_nose(const ParameterSet& set, double gap, double speed, double spin) {
   Bundle b;
-  b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
-  b.topology.add_tube(1);
-  b.topology.add_tube(1);
-  b.state = State(2);
+  b.place(set, 1, {{0, 0}, {0, 0}});
   b.state.position.set(1, {0, 0, b.interaction.cutoff() + gap});
   if (spin > 0) {  // beside one another: the second one's end sweeps over the first
     b.state.position.set(1, {0, 0.3 * b.interaction.cutoff(), 0.8 * b.interaction.cutoff()});

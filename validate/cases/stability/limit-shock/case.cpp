@@ -20,7 +20,7 @@ constexpr double least = 0.6, most = 1.2;  // reached, over the estimate
 
 struct Load {
   int tubes = 7, elements = 30;
-  double rate = 0;  // eV/ps, of the moment on each tube
+  double rate = 0;  // rate of the moment on each tube, eV/ps
 };
 
 double whole_moment(const ParameterSet& set) { return wall_shear * set.bond.twist / set.radius; }  // eV

@@ -15,11 +15,8 @@ constexpr double start = 3.0;  // nm apart, out of reach
 // Two single elements that cross at right angles and meet head on.
 Bundle crossed(const ParameterSet& set, double speed) {
   Bundle b;
-  b.topology = topology_of(set);
   b.interaction.law = line_law({line_contact_of(set)});
-  b.topology.add_tube(1);
-  b.topology.add_tube(1);
-  b.state = State(2);
+  b.place(set, 1, {{0, 0}, {0, 0}});
   b.state.position.set(0, {-0.5 * start, 0, 0});
   b.state.position.set(1, {0.5 * start, 0, 0});
   b.state.orientation.set(1, turn_about(Vector3::UnitX(), units::pi / 2));

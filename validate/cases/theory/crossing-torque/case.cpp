@@ -30,7 +30,7 @@ Crossing crossing(const LineContact& law, double distance, double angle) {
 
 CaseResult run(const CaseContext& context) {
   const LineContact law = line_contact_of(context.model());
-  const PairIntegral integral = surface_integral(context.set());
+  const WallsIntegral integral = surface_integral(context.set());
   const Well well = integral.crossed_well();
   const auto energy = [&](double angle) { return well.energy / std::sin(angle); };
   const auto torque = [&](double angle) { return well.energy * std::cos(angle) / std::pow(std::sin(angle), 2); };

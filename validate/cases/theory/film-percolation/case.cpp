@@ -114,11 +114,11 @@ struct Relaxed {
   double length = 0;
   double contacts = 0, kept = 0, made = 0;  // of a tube at the start; the part of these that stays; of a tube, new
   double before = 0, after = 0;             // thresholds by the order of laying
-  double energy = 0, crossings = 0;         // eV, at the start: of the model, of all crossings by the integral
+  double energy = 0, crossings = 0;         // energy at the start, eV: of the model, and of all crossings by the integral
 };
 
 // Energy of all crossings of tubes of a film, each as that of two endless tubes.
-double crossing_energy(const PairIntegral& integral, const Film& film, double cutoff) {
+double crossing_energy(const WallsIntegral& integral, const Film& film, double cutoff) {
   const double half = 0.5 * film.length();
   double sum = 0;
   for (std::size_t i = 0; i < film.tubes.size(); ++i)
@@ -212,7 +212,7 @@ void add_relaxed_figures(const std::vector<Relaxed>& films, CaseResult& result) 
 
 CaseResult run(const CaseContext& context) {
   const CaseTube tube = context.tube();
-  const PairIntegral integral = surface_integral(tube.set);
+  const WallsIntegral integral = surface_integral(tube.set);
   const double spacing = line_crossed_well(tube.model.law<LineParameters>()->density, 0.5 * units::pi).distance;
   CaseResult result;
   result.check_relative("distance of the axes of tubes at rest on one another", spacing,

@@ -231,7 +231,7 @@ CaseFigure figure_of(Ends ends, double sliding, double glued, const Curve& free,
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
   const double sliding = sliding_bend(oracle);
-  const PairIntegral integral = surface_integral(oracle);
+  const WallsIntegral integral = surface_integral(oracle);
   const double spacing = integral.parallel_well().distance;
   const double glued = glued_bend(oracle, spacing);
   CaseResult result;

@@ -12,7 +12,7 @@ double vdw_energy(const ParameterSet& set, int tubes, int elements) {
   return Simulation(b.topology, b.interaction, {}, b.state, b.time_step).forces().energy.vdw;
 }
 
-// eV/nm, by the difference of two lengths, which has no ends in it.
+// Energy per length (eV/nm) as the difference of two lengths, which has no ends in it.
 double energy_per_length(const ParameterSet& set, int tubes) {
   return (vdw_energy(set, tubes, 16) - vdw_energy(set, tubes, 8)) / (8 * set.element_length);
 }
@@ -21,7 +21,7 @@ double contacts(double tubes) { return 3 * tubes - std::sqrt(12 * tubes - 3); }
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
-  const PairIntegral integral = surface_integral(oracle);
+  const WallsIntegral integral = surface_integral(oracle);
   const Well pair = integral.parallel_well();
   CaseResult result;
   std::vector<double> tubes, energies;

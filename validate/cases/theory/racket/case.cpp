@@ -59,7 +59,7 @@ double bending(const Head& head, double bend) {  // eV, both halves
 }
 
 // Attraction of the arms (eV) beyond the point where they part.
-double attraction(const Head& head, const PairIntegral& contact) {
+double attraction(const Head& head, const WallsIntegral& contact) {
   double sum = 0;
   for (std::size_t k = 1; k < head.size() && head[k].slope > 0; ++k)
     sum += contact.parallel(2 * head[k].y) * (head[k].s - head[k - 1].s);
@@ -180,7 +180,7 @@ CaseFigure curvature_figure(const Head& head, const State& chain, double element
 
 CaseResult run(const CaseContext& context) {
   const ParameterSet model = context.model(), oracle = context.set();
-  const PairIntegral contact = surface_integral(oracle);
+  const WallsIntegral contact = surface_integral(oracle);
   const Well pair = contact.parallel_well();
   const double adhesion = -pair.energy, bend = oracle.bond.bend;
   const Head head = elastica(bend, adhesion, pair.distance), start = elastica(0.85 * bend, adhesion, pair.distance),

@@ -19,7 +19,7 @@ constexpr int beyond = 10;          // elements of each tube outside of the over
 constexpr double friction = 20;     // pN/nm, axial
 constexpr double breaks_at = 1e-3;  // strain
 constexpr double speed = 0.004;     // nm/ps
-constexpr double way = 2;           // nm, of the pulled end
+constexpr double way = 2;           // displacement of the pulled end, nm
 constexpr double seen_from = 1;     // nm of the way: from here on the whole overlap slides
 
 // Two tubes side by side that move along their axis alone, and overlap by so many elements once the second is drawn

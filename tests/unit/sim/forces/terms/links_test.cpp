@@ -220,7 +220,7 @@ TEST(Links, FormWhereTubesTouchUpToTheirNumber) {
   for (const TermEvent& e : s.term_events())
     for (const int element : {e.a, e.b})
       count[static_cast<std::size_t>(element)] += std::string(e.what) == "link formed" ? 1 : -1;
-  // One for each nm: 1.38 on an element in the mean.
+  // One link for each nm is 1.38 links on an element in the mean.
   EXPECT_LE(*std::max_element(count.begin(), count.end()), 2);
   EXPECT_EQ(*std::max_element(count.begin(), count.end()), 2);
 }

@@ -1,6 +1,7 @@
 // The step that follows the motion. A run marks a good state every `window` steps. Where the motion blows up, or
 // the account of energy does not close over a window, it goes back to the last mark and divides every step in two,
 // up to `most` parts, and puts steps together again once the motion has been quiet. Files count by the whole steps.
+// The simulator (run/rollback.hpp) and the ranks of LAMMPS (lammps/fix_nve.hpp) decide by this rule.
 //
 // With a device it looks and marks less often (RunSchedule::look_rarely) as long as steps are whole. Where a long
 // window fails, it does that window again and looks closely, so that it divides the same steps as without a device.
@@ -23,13 +24,13 @@ struct StepControl {
   std::int64_t keep = least_keep;  // for how many they are divided when it happens next
   std::int64_t close_until = 0;    // the step before which a run with a device looks closely
 
-  // Halves the steps after a failure with steps divided into `divided` parts. The simulation stands at the mark
-  // again.
-  void shorten(int divided, Simulation& simulation);
-  // Whether the next window is a short one.
-  bool looks_closely(const Simulation& simulation) const;
+  // Both return into how many parts a step is divided from now on; `divided`: so far.
+  // After a failure, with the motion back at the mark of this step.
+  int shorten(int divided, std::int64_t step);
   // At a mark, after a window without failure.
-  void lengthen(Simulation& simulation);
+  int lengthen(int divided, std::int64_t step);
+  // Whether the next window is a short one.
+  bool looks_closely(int divided, std::int64_t step) const;
 };
 
 }  // namespace ropewalk

@@ -1,0 +1,137 @@
+#include "atomistic/walled_tube.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "atomistic/finite_tube.hpp"
+#include "atomistic/runs.hpp"
+#include "io/plain_text.hpp"
+
+namespace ropewalk::calibrate {
+namespace {
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words;
+  std::istringstream stream(line);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+std::string walled_pair_commands(const Potential& potential, const LennardJones& law, std::size_t walls) {
+  const auto refuse = [&](const std::string& line) {
+    throw InputError({potential.file, 0, "--potential"},
+                     fmt::format("has the line \"{}\", which several walls cannot have each", printable(line, 60)),
+                     "take one with pair_style STYLE and pair_coeff * * FILE C");
+  };
+  if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
+  const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
+  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0) refuse(potential.commands[0]);
+  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
+    refuse(potential.commands[1]);
+  std::string own = style[1];
+  for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
+  std::string styles = "pair_style hybrid/overlay", coefficients;
+  for (std::size_t k = 1; k <= walls; ++k) {
+    styles += " " + own;
+    coefficients += fmt::format("pair_coeff * * {}{} {}", style[1], walls > 1 ? fmt::format(" {}", k) : "", coeff[3]);
+    for (std::size_t l = 1; l <= walls; ++l) coefficients += l == k ? " " + coeff[4] : " NULL";
+    coefficients += "\n";
+  }
+  if (walls == 1) return styles + "\n" + coefficients;
+  const double cutoff = law.cutoff > 0 ? law.cutoff : 4 * law.sigma;
+  styles += fmt::format(" lj/cut {:.8g}\n", cutoff / angstrom);
+  for (std::size_t k = 1; k <= walls; ++k)
+    for (std::size_t l = k + 1; l <= walls; ++l)
+      coefficients +=
+          fmt::format("pair_coeff {} {} lj/cut {:.10g} {:.10g}\n", k, l, law.epsilon, law.sigma / angstrom);
+  // Shifted, since a minimiser is stopped by the jumps of energy where atoms pass a cutoff.
+  return styles + coefficients + "pair_modify pair lj/cut shift yes\n";
+}
+
+WalledTube::WalledTube(const std::vector<WallShape>& walls, const std::vector<long>& free_hexagons, double band) {
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const auto& [c, shape] = walls[k];
+    const long held = hexagons_in(c, shape, band), free = free_hexagons[k], all = free + 2 * held;
+    Part part;
+    part.free_length = static_cast<double>(free) * shape.length_per_hexagon;
+    const double length = static_cast<double>(all) * shape.length_per_hexagon;
+    total_length_ = std::max(total_length_, length);
+    part.sites = strip_sites(c, all);
+    const auto place_of = [&](const Site& site) {
+      const long height = height_in_thirds(c, site);
+      return height < 3 * held ? 0 : height < 3 * (held + free) ? 1 : 2;
+    };
+    std::stable_sort(part.sites.begin(), part.sites.end(),
+                     [&](const Site& a, const Site& b) { return place_of(a) < place_of(b); });
+    for (const Site& site : part.sites) {
+      if (place_of(site) == 0) ++part.below;
+      if (place_of(site) == 1) ++part.free;
+      part.atoms.push_back(place(c, site, shape) - Vector3(0, 0, 0.5 * length));
+    }
+    atoms_ += part.atoms.size();
+    parts_.push_back(std::move(part));
+  }
+}
+
+std::string WalledTube::data() const {
+  double radius = 0;
+  std::vector<std::vector<Vector3>> walls;
+  for (const Part& part : parts_) {
+    walls.push_back(part.atoms);
+    for (const Vector3& atom : part.atoms) radius = std::max(radius, std::hypot(atom.x(), atom.y()));
+  }
+  const double half = 0.5 * total_length_ + 1;
+  return data_file(walls, radius + half, -half, half);
+}
+
+std::string WalledTube::commands(const Potential& potential, const LennardJones& law, const std::string& data,
+                                 Holding holding, double turn) const {
+  std::string text = header_commands("s s s", 0.05) + fmt::format("read_data {}\n", data) +
+                     walled_pair_commands(potential, law, parts_.size());
+  std::string below = "group below id", above = "group above id", half = "variable half atom", totals, columns;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    const bool led = holding == Holding::all || k + 1 == parts_.size();
+    if (led) {
+      below += fmt::format(" {}:{}", first + 1, first + part.below);
+      above += fmt::format(" {}:{}", first + part.below + part.free + 1, first + part.atoms.size());
+    }
+    half += fmt::format("{}{:.12g}*(type=={})", k == 0 ? " " : "+", 0.5 * part.free_length / angstrom, k + 1);
+    totals += fmt::format("group wall{} type {}\ncompute w{} wall{} reduce sum c_each\n", k + 1, k + 1, k + 1, k + 1);
+    columns += fmt::format(" c_w{}", k + 1);
+    first += part.atoms.size();
+  }
+  text += below + "\n" + above + "\ngroup held union below above\ngroup free subtract all held\n" + half + "\n";
+  text += holding == Holding::all ? std::string("variable led atom 1\n")
+                                  : fmt::format("variable led atom type=={}\n", parts_.size());
+  if (turn != 0)
+    text += fmt::format("displace_atoms all rotate 0 0 0 0 0 1 {:.12g} units box\n", turn * units::rad_in_degree);
+  text += "fix ref all store/state 0 x y z\n";
+  text += "fix hold held setforce 0.0 0.0 0.0\n";
+  text += fmt::format(
+      "variable is_middle atom (type=={})&&(abs(z)<{:.8g})\ngroup middle variable is_middle\n"
+      "variable rho atom sqrt(x*x+y*y)\n"
+      "compute rho middle reduce ave v_rho\n"
+      "compute each all pe/atom pair\n{}"
+      "min_style cg\n"
+      "min_modify dmax 0.05 line quadratic\n"
+      "thermo_style custom step pe fnorm fmax c_rho{}\n"
+      "thermo 500\n"
+      "thermo_modify flush yes lost error norm no format float %.12g\n",
+      parts_.size(), 0.2 * free_length() / angstrom, totals, columns);
+  return text;
+}
+
+std::string WalledTube::report(const std::string& name) const {
+  std::string values;
+  for (std::size_t k = 1; k <= parts_.size(); ++k) values += fmt::format("$(c_w{}:%.15g) ", k);
+  return fmt::format("print \"{}$(fnorm:%.6g) $(c_rho:%.15g)\" append {}.dat screen no\n", values, name);
+}
+
+}  // namespace ropewalk::calibrate
