@@ -150,9 +150,9 @@ Envelope scaled_envelope(double radius);
 // The head of a table, one "# key: value" line each.
 struct AtomisticOrigin {
   Chirality chirality;
-  std::string species;  // "B and N"; empty: carbon
   std::string potential, potential_hash, lammps;
   std::vector<std::string> notes;
+  std::string species{};  // "B and N"; empty: carbon
 };
 std::vector<OutputColumn> atomistic_columns();
 std::string atomistic_csv(const std::vector<AtomisticRow>& rows, const AtomisticOrigin& origin);

@@ -59,7 +59,7 @@ double line_density(const AtomLaw& law, const Shell& i, const Shell& j, double r
 struct AtomColumn {
   std::vector<Vector3> atoms;  // nm, axis z
   double period = 0;           // nm
-  std::vector<char> second;    // whether each is of a second species; empty: none is
+  std::vector<char> second{};  // whether each is of a second species; empty: none is
 };
 // Laws between the atoms of two species: 1 with 1, 1 with 2, 2 with 2; all with one cutoff.
 using SpeciesLaws = std::array<AtomLaw, 3>;

@@ -207,10 +207,10 @@ TEST(Atoms, MeanOverRegistryIsTheSurfaceIntegral) {
 
 TEST(Atoms, TurnAndShiftByTheirPeriodsChangeNothing) {
   const AtomColumn tube = armchair(6, 0.41);
-  const double energy = parallel_energy_of_atoms({}, tube, tube, 1.12, 0.3, 0.05);
-  EXPECT_NEAR(parallel_energy_of_atoms({}, tube, tube, 1.12, 0.3 + units::pi / 3, 0.05), energy, 1e-9);
-  EXPECT_NEAR(parallel_energy_of_atoms({}, tube, tube, 1.12, 0.3, 0.05 - 3 * tube.period), energy, 1e-9);
-  EXPECT_GT(std::fabs(parallel_energy_of_atoms({}, tube, tube, 1.12, 0.3, 0.17) - energy), 1e-6);
+  const double energy = parallel_energy_of_atoms(AtomLaw(), tube, tube, 1.12, 0.3, 0.05);
+  EXPECT_NEAR(parallel_energy_of_atoms(AtomLaw(), tube, tube, 1.12, 0.3 + units::pi / 3, 0.05), energy, 1e-9);
+  EXPECT_NEAR(parallel_energy_of_atoms(AtomLaw(), tube, tube, 1.12, 0.3, 0.05 - 3 * tube.period), energy, 1e-9);
+  EXPECT_GT(std::fabs(parallel_energy_of_atoms(AtomLaw(), tube, tube, 1.12, 0.3, 0.17) - energy), 1e-6);
 }
 
 TEST(Atoms, ADoubledCellIsTheSameTube) {
@@ -218,9 +218,9 @@ TEST(Atoms, ADoubledCellIsTheSameTube) {
   AtomColumn two = tube;
   two.period *= 2;
   for (const Vector3& a : tube.atoms) two.atoms.push_back(a + Vector3(0, 0, tube.period));
-  const double energy = parallel_energy_of_atoms({}, tube, tube, 1.12, 0.2, 0.1);
-  EXPECT_NEAR(parallel_energy_of_atoms({}, two, tube, 1.12, 0.2, 0.1), energy, 1e-10);
-  EXPECT_NEAR(parallel_energy_of_atoms({}, tube, two, 1.12, 0.2, 0.1), energy, 1e-10);
+  const double energy = parallel_energy_of_atoms(AtomLaw(), tube, tube, 1.12, 0.2, 0.1);
+  EXPECT_NEAR(parallel_energy_of_atoms(AtomLaw(), two, tube, 1.12, 0.2, 0.1), energy, 1e-10);
+  EXPECT_NEAR(parallel_energy_of_atoms(AtomLaw(), tube, two, 1.12, 0.2, 0.1), energy, 1e-10);
 }
 
 // --- What is refused --------------------------------------------------------------------------------------
@@ -240,7 +240,7 @@ TEST(VanDerWaals, WrongInputIsRefused) {
   EXPECT_THROW(parallel_well(with_cutoff(0.1), s, s), std::invalid_argument);
   const AtomColumn tube = armchair(6, 0.41);
   EXPECT_THROW(parallel_energy_of_atoms(uncut, tube, tube, 1.1, 0, 0), std::invalid_argument);
-  EXPECT_THROW(parallel_energy_of_atoms({}, {}, tube, 1.1, 0, 0), std::invalid_argument);
+  EXPECT_THROW(parallel_energy_of_atoms(AtomLaw(), {}, tube, 1.1, 0, 0), std::invalid_argument);
 }
 
 }  // namespace UNIT
