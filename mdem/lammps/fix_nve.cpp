@@ -268,10 +268,10 @@ void FixNve::mark() {
 }
 
 // Also looks for failures of any rank in the last forces.
-bool FixNve::is_sound() {
+bool FixNve::is_sound(bool of_account) {
   MPI_Allreduce(MPI_IN_PLACE, &failure_, 1, MPI_INT, MPI_MAX, world);
   if (failure_ != 0) return false;
-  if (!model_->judges_account || divided_ >= StepControl::most) return true;
+  if (!of_account || !model_->judges_account || divided_ >= StepControl::most) return true;
   const Reading now = reading_of(energies());
   const bool mixed = model_->interaction.precision == Interaction::Precision::mixed;
   if (account_closes(mark_.energy, now.mark, now.kinetic, now.bonds, mixed ? now.contact : 0,
@@ -285,7 +285,7 @@ void FixNve::judge() {
   const LMP::bigint step = update->ntimestep;
   const bool marks = step % StepControl::window == 0;
   if (!marks && step != update->laststep) return;
-  while (!is_sound()) {
+  while (!is_sound(marks)) {
     if (!engine_->leads())
       refuse(lmp,
              "step " + std::to_string(step) + ": the energy balance has not closed since step " +

@@ -64,7 +64,7 @@ class FixNve : public FixMotion {
   bool looks_sound();
   bool compute_within();
   bool make_steps_up_to(LMP::bigint last, LMP::bigint present);
-  bool is_sound();
+  bool is_sound(bool of_account);
 
   void end();
   void compute_now();
