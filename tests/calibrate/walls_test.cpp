@@ -88,7 +88,7 @@ TEST_P(WalledContact, OfParallelTubesIsTheMeanOverAtoms) {
   for (const double distance : {well.distance, well.distance + 0.15, well.distance + 0.6}) {
     double sum = 0;
     for (const AtomColumn& a : i.columns)
-      for (const AtomColumn& b : j.columns) sum += registry_spread(law, a, b, distance, 60).mean;
+      for (const AtomColumn& b : j.columns) sum += registry_spread({law, law, law}, a, b, distance, 60).mean;
     EXPECT_NEAR(sum / well.energy, integral.parallel(distance) / well.energy, 2e-3) << distance;
   }
 }
