@@ -102,6 +102,10 @@ void add_energy(CLI::App& app, Program& program) {
   c->add_option("--exclude-along-tube-nm", a->options.exclude_along_tube,
                 "Parts of one tube up to this far apart along it do not attract [default: as a scene has it]")
       ->check(number_within(Bounds::positive()));
+  c->add_option("--nodes-per-element", a->options.nodes,
+                "Nodes of the line law on an element: a state that Newton's method found has the number that `check` "
+                "prints [default: as a run in time has it]")
+      ->check(CLI::Range(1, 64));
   c->add_option("--threads", a->threads, "Threads [default: all cores]")->check(thread_range());
   c->add_flag("--legacy-torque", a->options.legacy_torque,
               "Leave out the torque that the published code leaves out");

@@ -40,7 +40,7 @@ py::dict evaluated(SingleState state) {
 
 SingleState options(const std::vector<std::string>& parameters, const std::vector<int>& tube_types,
                     const std::string& law, const std::string& bond, bool legacy_torque, double exclude_along_tube,
-                    double free_length, bool reference) {
+                    double free_length, int nodes, bool reference) {
   SingleState s;
   s.parameters = parameters;
   s.tube_types = tube_types;
@@ -49,6 +49,7 @@ SingleState options(const std::vector<std::string>& parameters, const std::vecto
   s.legacy_torque = legacy_torque;
   s.exclude_along_tube = exclude_along_tube;
   s.free_length = free_length;
+  s.nodes = nodes;
   s.reference = reference;
   return s;
 }
@@ -90,7 +91,8 @@ py::dict energy_of_simulation(const SteppedScene& stepped, bool reference) {
 void bind_energy(py::module_& m) {
   py::class_<SingleState>(m, "StateOptions")
       .def(py::init(&options), py::arg("parameters"), py::arg("tube_types"), py::arg("law"), py::arg("bond"),
-           py::arg("legacy_torque"), py::arg("exclude_along_tube"), py::arg("free_length"), py::arg("reference"));
+           py::arg("legacy_torque"), py::arg("exclude_along_tube"), py::arg("free_length"),
+           py::arg("nodes"), py::arg("reference"));
   m.def("energy_of_file", [](const std::string& path, SingleState s) {
     s.source = std::make_shared<StateSource>(path);
     return evaluated(std::move(s));

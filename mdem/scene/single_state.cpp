@@ -124,6 +124,9 @@ EvaluatedState evaluate(const SingleState& s) {
   scene.element_length = stated > 0 ? stated : scene.parameters().element_length;
   scene.contact.law = law_named(s.law, scene.sets);
   check_length_of_law(scene);
+  if (s.nodes > 0 && scene.contact.law != "line")
+    throw InputError({"", 0, "--nodes-per-element"}, "belongs to the line law", "leave it out");
+  scene.contact.nodes = s.nodes;
   scene.contact.legacy_torque = s.legacy_torque;
   scene.contact.exclude_along_tube = s.exclude_along_tube;
   scene.contact.precision = Interaction::Precision::full;  // once, and compared with the reference

@@ -21,6 +21,7 @@ struct SingleState {
   bool legacy_torque = false;
   double exclude_along_tube = 0;  // nm; 0: as a scene has it
   double free_length = 0;         // nm, between what holds the tubes: they collapse by it; 0: the whole length
+  int nodes = 0;                  // on an element, of the line law; 0: as a run in time has them
   bool reference = false;         // energies by the plain path over all pairs
 };
 

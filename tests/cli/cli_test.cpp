@@ -541,27 +541,6 @@ TEST_F(Cli, ExportRefusesWhatLammpsLacks) {
   EXPECT_FALSE(fs::exists(dir / "there"));
 }
 
-// Where `run` goes back and halves its steps.
-TEST_F(Cli, ExportSaysThatStepsAreTooLongForLammps) {
-  const std::string rope =
-      "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-tersoff\"\n[rope]\ntubes = 7\nlength_nm = 13.8\n"
-      "[[grip]]\nend = \"lower\"\n[[grip]]\nend = \"upper\"\nabout_z = { rotation_deg = [[0, 0], [1, 60]] }\n"
-      "smooth_ps = 0\n[run]\nduration_ps = 12\n";
-  const auto said = [&](const std::string& more) {
-    spit(dir / "s.toml", rope + more);
-    const Outcome o = run("export s.toml --lammps there --force");
-    EXPECT_EQ(o.code, 0) << o.err;
-    std::smatch found;
-    return std::regex_search(o.err, found, std::regex("set run.time_step_fs = (2[0-9.]+) and export again"))
-               ? found[1].str()
-               : "";
-  };
-  const std::string step = said("");
-  ASSERT_NE(step, "");
-  EXPECT_NE(run("run s.toml --out d --quiet").err.find("on with steps of " + step), std::string::npos);
-  EXPECT_EQ(said("time_step_fs = " + step + "\n"), "");
-}
-
 TEST_F(Cli, DampingThatCoolsBesideAThermostatIsRefusedOrSaid) {
   const std::string bath = "[thermostat]\ntemperature_K = 250\ncoupling_per_ps = 1\n";
   const auto damped = [](const char* viscosity, const char* rate) {

@@ -89,7 +89,7 @@ grep -q 'is there already' said || fail "an earlier run is not named: $(cat said
 # next one goes on to the same bits.
 if [ -n "$lmp" ]; then
   mkdir bin && ln -s "$lmp" bin/lmp-ropewalk
-  sed 's/^duration_ps = .*/duration_ps = 300/' scenes/long.toml > scenes/ranks.toml
+  sed 's/^duration_ps = .*/duration_ps = 40/' scenes/long.toml > scenes/ranks.toml
   for job in whole pieces; do
     "$ropewalk" export scenes/ranks.toml --lammps $job >/dev/null
     sed -i 's/--ntasks=.*/--ntasks=2/; s/--time=.*/--time=00:05:00/' $job/job.sh

@@ -70,7 +70,7 @@ def run_and_go_on(name: str) -> None:
     ropewalk.run(SCENE, name, steps=30, threads=3)
     ropewalk.resume(name, steps=50)
     run = ropewalk.open(name)
-    run.log["total_eV"], run.frames[-1].position
+    run.log["vdw_eV"], run.frames[-1].position
 
 
 with tempfile.TemporaryDirectory() as folder:

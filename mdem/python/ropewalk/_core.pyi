@@ -96,7 +96,7 @@ def resume(directory: str, accept_changes: bool, options: RunOptions) -> None: .
 class StateOptions:
     def __init__(
         self, parameters: Sequence[str], tube_types: Sequence[int], law: str, bond: str, legacy_torque: bool,
-        exclude_along_tube: float, free_length: float, reference: bool,
+        exclude_along_tube: float, free_length: float, nodes: int, reference: bool,
     ) -> None: ...
 
 def energy_of_file(path: str, options: StateOptions) -> dict[str, Any]: ...

@@ -139,7 +139,7 @@ def atoms(
         raise TypeError("a state alone does not know its parameter set: give `parameters`")
     one = isinstance(parameters, (str, os.PathLike, ParameterSet))
     sets: Sequence[SetName] = [parameters] if one else parameters  # type: ignore[list-item,assignment]
-    options = _core.StateOptions([_set_name(s) for s in sets], list(tube_types), "", "", False, 0.0, 0.0, False)
+    options = _core.StateOptions([_set_name(s) for s in sets], list(tube_types), "", "", False, 0.0, 0.0, 0, False)
     if isinstance(state, State):
         flat = state.flat
         found = _core.atoms_of_state(

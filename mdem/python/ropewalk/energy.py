@@ -51,6 +51,7 @@ def energy(
     legacy_torque: bool = False,
     exclude_along_tube_nm: Optional[float] = None,
     free_length_nm: Optional[float] = None,
+    nodes_per_element: Optional[int] = None,
     reference: bool = False,
 ) -> StateEnergy:
     """Energies in eV, forces in eV/nm and torques in eV of one state at rest, in double precision, as `ropewalk energy`.
@@ -65,6 +66,8 @@ def energy(
         legacy_torque: leaves out the torque that the published code leaves out
         exclude_along_tube_nm: parts of one tube up to this far apart along it do not attract, nm; None: as a scene has it
         free_length_nm: length of the tubes between what holds them, by which twisted tubes collapse, nm; None: all of it
+        nodes_per_element: nodes of the line law on an element; None: as a run in time has them, which Newton's method
+            has not (no unit)
         reference: by the plain sum over all pairs instead of the fast path
     """
     if parameters is None:
@@ -81,7 +84,7 @@ def energy(
         sets: Sequence[SetName] = [parameters] if one else parameters  # type: ignore[list-item,assignment]
         options = _core.StateOptions(
             [_set_name(s) for s in sets], list(tube_types), law or "", bond or "", legacy_torque,
-            exclude_along_tube_nm or 0.0, free_length_nm or 0.0, reference,
+            exclude_along_tube_nm or 0.0, free_length_nm or 0.0, nodes_per_element or 0, reference,
         )
         if isinstance(state, (Scene, Simulation, State)):
             given = state.state if isinstance(state, Simulation) else state.start if isinstance(state, Scene) else state

@@ -443,33 +443,41 @@ def parametrize(
 
 
 def calibrate(
-    chirality: tuple[int, int],
+    chirality: tuple[int, int] | Sequence[tuple[int, int]],
     out: Optional[str | os.PathLike[str]] = None,
     *,
-    potential: str = "tersoff",
-    epsilon_eV: float = 2.84e-3,
-    sigma_nm: float = 0.34,
-    lj_cutoff_nm: float = 1.2,
+    atoms: str | os.PathLike[str] = "C",
+    potential: Optional[str] = None,
+    carried_by: Optional[str] = None,
+    epsilon_eV: Optional[float] = None,
+    sigma_nm: Optional[float] = None,
+    lj_cutoff_nm: Optional[float] = None,
     envelope: bool = False,
     force: bool = False,
 ) -> ParameterSet:
     """Derives the parameter set of a tube from atoms, as `ropewalk calibrate`: some seconds. LAMMPS is needed.
 
     Arguments:
-        chirality: (n, m) (no unit)
-        out: file to write, with its tables beside it; None: cnt-N-M-POTENTIAL.toml in the current directory
-        potential: between bonded atoms: "tersoff", "airebo", "rebo" or "lcbop"
-        epsilon_eV: depth of the Lennard-Jones law between atoms of two tubes, eV
-        sigma_nm: its length, nm
-        lj_cutoff_nm: its cutoff, nm; 0: none
+        chirality: (n, m), or one for each wall, inside first (no unit)
+        out: file to write, with its tables beside it; None: as cnt-10-10-tersoff.toml in the current directory
+        atoms: "C", "BN", or a file that names species, potentials and contact of another honeycomb
+        potential: between bonded atoms: "tersoff", "airebo", "rebo" or "lcbop" of carbon; None: the first of the atoms
+        carried_by: several walls: those that carry stretch and torsion, "outer" or "all"; None: all where they lock
+        epsilon_eV: depth of the Lennard-Jones law between atoms of two tubes, eV; None: that of carbon, or of the file
+        sigma_nm: its length, nm; None: that of carbon, or of the file
+        lj_cutoff_nm: its cutoff, nm; 0: none; None: 1.2 for one wall, 3 for several
         envelope: measures kink, collapse and 1 % limits as well (minutes)
         force: replaces existing files
     """
-    n, m = chirality
-    found = json.loads(_call(["calibrate", f"--chirality={n},{m}", "--json", "--quiet",
-                              *_options(out=os.fspath(out) if out is not None else None, potential=potential,
-                                        lj=f"{epsilon_eV!r},{sigma_nm!r}", lj_cutoff=lj_cutoff_nm, envelope=envelope,
-                                        force=force)]))
+    walls: list[Any] = [chirality] if isinstance(chirality[0], int) else list(chirality)
+    written = "@".join(f"{n},{m}" for n, m in walls)
+    law = None
+    if epsilon_eV is not None or sigma_nm is not None:
+        law = f"{2.84e-3 if epsilon_eV is None else epsilon_eV!r},{0.34 if sigma_nm is None else sigma_nm!r}"
+    found = json.loads(_call(["calibrate", f"--chirality={written}", "--json", "--quiet",
+                              *_options(out=os.fspath(out) if out is not None else None, atoms=os.fspath(atoms),
+                                        potential=potential, carried_by=carried_by, lj=law, lj_cutoff=lj_cutoff_nm,
+                                        envelope=envelope, force=force)]))
     return ParameterSet(found["file"])
 
 
