@@ -11,6 +11,9 @@ for tube in 5,5 6,4 9,0 8,2 6,6 8,8 12,6 10,10 17,0 12,12 16,4 15,15 20,20; do
   # shellcheck disable=SC2086  # two words
   "$ropewalk" calibrate --chirality "$tube" $envelope --quiet --force
 done
+for walls in '(5,5)@(10,10)' '(10,10)@(15,15)'; do
+  "$ropewalk" calibrate --chirality "$walls" --quiet --force
+done
 "$ropewalk" calibrate --atoms BN --chirality 10,10 --quiet --force
 "$ropewalk" calibrate --atoms BN --chirality 10,10 --potential tersoff --quiet --force
 for potential in lcbop airebo rebo; do
