@@ -394,6 +394,14 @@ WalledStiffness measure_walls(const std::vector<Chirality>& chiralities, const P
     wall.atoms_per_length.standard_error =
         out.all.atoms_per_length.standard_error * wall.atoms_per_length.value / density;
   }
+  // In a long tube free walls carry nothing and bend along. What specimens of these lengths have besides, from corrugation
+  // and from the ends of the free walls, is an error.
+  const auto widen = [](Measured& held, const Measured& of_long_tube) {
+    held.standard_error = std::max(held.standard_error, std::fabs(held.value - of_long_tube.value));
+  };
+  widen(out.outer.EA, out.walls.back().EA);
+  widen(out.outer.GJ, out.walls.back().GJ);
+  widen(out.outer.EI, out.all.EI);
   for (Stiffness* s : {&out.all, &out.outer}) {
     s->envelope = scaled_envelope(radius);
     limits_from_terms(*s, s->envelope);
