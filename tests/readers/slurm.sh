@@ -86,7 +86,7 @@ grep -q '"status": "finished"' long/manifest.json || fail "the run is not done: 
 grep -q 'is there already' said || fail "an earlier run is not named: $(cat said)"
 
 # A job on two ranks of LAMMPS, which asks SLURM when it ends: a whole one, and one whose first piece has a second. The
-# next one goes on to the same bits.
+# next one goes on to the same state.
 if [ -n "$lmp" ]; then
   mkdir bin && ln -s "$lmp" bin/lmp-ropewalk
   sed 's/^duration_ps = .*/duration_ps = 40/' scenes/long.toml > scenes/ranks.toml
@@ -102,7 +102,10 @@ if [ -n "$lmp" ]; then
   done
   grep -q 'Submitted batch job' pieces/messages.txt || fail "one job was enough: $(cat pieces/messages.txt)"
   grep -q '"status": "finished"' pieces/manifest.json || fail "the pieces do not reach the end"
-  cmp whole/final.csv pieces/final.csv || fail "a job in pieces has other bits"
+  # The same bits where the piece could stop at a multiple of 512 steps, which a busy machine does not reach in a second.
+  paste -d, <(grep -v '^#' whole/final.csv) <(grep -v '^#' pieces/final.csv) | awk -F, '
+    NR > 1 { n = NF / 2; for (i = 1; i <= n; ++i) { d = $i - $(i + n); if (d * d > 1e-8) { print; bad = 1 } } }
+    END { exit bad || NR < 60 }' || fail "a job in pieces goes elsewhere"
 fi
 
 # A search for thresholds, one point a task; the same command then makes the page of all.
