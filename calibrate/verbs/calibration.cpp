@@ -585,12 +585,11 @@ void put_pull(ParameterSet& set, const PullFit& pull) {
 
 std::string parameter_file_comment(const Calibration& c) {
   std::string text = fmt::format(
-      "# Calibrated parameters of the {} {} nanotube, {} potential. Made by\n#   {}\n"
+      "# Calibrated parameters of the {} nanotube, {} potential. Made by\n#   {}\n"
       "# Stiffnesses from relaxed atomistic {} (LAMMPS), contact from the surface integral of the "
       "Lennard-Jones\n"
       "# law; the tables named under [provenance] hold every energy that was fitted.\n",
-      c.request.tube(), c.request.honeycomb().carbon() ? "carbon" : c.request.honeycomb().name,
-      c.request.potential.name, c.request.command, c.walled ? "specimens" : "cells");
+      c.request.tube() + (c.request.honeycomb().carbon() ? " carbon" : ""), c.request.potential.name, c.request.command, c.walled ? "specimens" : "cells");
   for (const std::string& w : c.warnings) text += "# Warning: " + w + "\n";
   return text;
 }
