@@ -14,8 +14,8 @@ done
 for walls in '(5,5)@(10,10)' '(10,10)@(15,15)'; do
   "$ropewalk" calibrate --chirality "$walls" --quiet --force
 done
-"$ropewalk" calibrate --atoms BN --chirality 10,10 --quiet --force
-"$ropewalk" calibrate --atoms BN --chirality 10,10 --potential tersoff --quiet --force
+"$ropewalk" calibrate --atoms BN --chirality 10,10 --envelope --quiet --force
+"$ropewalk" calibrate --atoms BN --chirality 10,10 --potential tersoff --envelope --quiet --force
 for potential in lcbop airebo rebo; do
   "$ropewalk" calibrate --chirality 10,10 --potential "$potential" --quiet --force
 done

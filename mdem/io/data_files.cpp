@@ -39,7 +39,9 @@ std::string instead_of(const std::string& name, const std::string& data) {
                                     : fmt::format("did you mean \"{}\"? Or ", near);
   text += "name a file, or a shipped set";
   const char* before = ": ";
-  for (const std::string& n : shipped) {
+  for (std::string n : shipped) {
+    // Tersoff's sets are found without their potential too.
+    if (const std::size_t end = n.rfind("-tersoff"); n.rfind("cnt-", 0) == 0 && end != std::string::npos) n.resize(end);
     text += fmt::format("{}\"{}\"", before, n);
     before = ", ";
   }

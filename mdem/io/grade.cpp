@@ -215,7 +215,7 @@ void grade_limits(const ParameterSet& set, Grade& grade) {
   };
   linear("linear_curvature", "linear_curvature over kink_curvature", v.kink_curvature, 0.05, 0.5);
   linear("linear_twist", "linear_twist over twist_collapse", v.twist_collapse, 0.1, 1);
-  linear("linear_stretch", "linear_stretch over stretch", v.stretch, 0.015, 0.15);
+  linear("linear_stretch", "linear_stretch over stretch", v.stretch, 0.015, set.honeycomb.carbon() ? 0.15 : 0.2);
   within(ranges, grade);
 }
 

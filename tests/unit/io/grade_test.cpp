@@ -105,10 +105,15 @@ TEST(Grade, OfTheContactFollowsItsErrors) {
 }
 
 TEST(Grade, LimitsOfOtherHoneycombsByTheRulesForCarbonAreNoGoodOnes) {
-  const std::string words = grade_of(shipped("bn-10-10-tersoff")).words();
+  ParameterSet by_rule = shipped("bn-10-10-tersoff");
+  const std::string measured = grade_of(by_rule).words();
+  EXPECT_EQ(measured.find("the rules for carbon"), std::string::npos) << measured;
+  EXPECT_EQ(measured.find("is to be expected"), std::string::npos) << measured;
+  for (Quantity& q : by_rule.quantities)
+    if (q.key == "validity.kink_curvature") q.origin = "derived";
+  const std::string words = grade_of(by_rule).words();
   EXPECT_NE(words.find("limited"), std::string::npos);
   EXPECT_NE(words.find("follow the rules for carbon, and BN may give way earlier"), std::string::npos) << words;
-  EXPECT_EQ(words.find("is to be expected"), std::string::npos) << words;
   ParameterSet soft = shipped("bn-10-10-tersoff");
   soft.bond.stretch /= 23;
   EXPECT_NE(grade_of(soft).words().find("a sheet of one layer has 30 to 500"), std::string::npos) << grade_of(soft).words();
