@@ -569,7 +569,7 @@ class LinkTerm : public ForceTerm {
 
   // Whether a slice has this link twice: a link to an image above acts on the original through its own image, one
   // period lower.
-  bool has_image(const LinkPlace& link) const { return here_.is_image(link.a) || here_.is_image(link.b); }
+  bool has_image(const LinkPlace& link) const { return scene_.is_image(link.a) || scene_.is_image(link.b); }
 
   void index() {
     acting_.clear();
