@@ -16,7 +16,7 @@ struct WallShape {
   TubeShape shape;
 };
 
-// What the grips at both ends hold.
+// The walls that the grips at both ends hold.
 enum class Holding { all, outer };
 
 // The potential within each of `walls` atom types, and Lennard-Jones (no cutoff: 4 sigma; shifted to 0 at the

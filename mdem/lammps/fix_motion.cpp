@@ -176,7 +176,7 @@ void FixMotion::pre_exchange() {
   if (engine_) reach_for(engine_->choose_skin());
 }
 
-// As the loop of LAMMPS does; its order of calls is kept.
+// These are the calls of LAMMPS's own loop, in their order.
 void FixMotion::exchange_elements() {
   domain->pbc();
   if (domain->box_change) {

@@ -156,7 +156,7 @@ struct ParameterSet {
   // Isotropic inertia m r^2: exact about the tube axis; the transverse value of a thin tube,
   // m (r^2/2 + length^2/12), is 0.83 of it at length = 2 r. Published choice; no gyroscopic term. About the axis of
   // a solid filament it is twice the true one: its torsional waves are slower by a factor 1.4, its statics the same.
-  // Of several walls: the sum.
+  // A tube of several walls has the sum of theirs.
   double element_inertia(double length) const {
     if (walls.empty()) return element_mass(length) * radius * radius;
     double sum = 0;

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 const std::string shipped_text = read_file(data_directory() + "/atoms/BN.toml");
 
-// What the reader says of the shipped file with `old` replaced.
+// The reader's message about the shipped file with `old` replaced.
 std::string said(const std::string& old, const std::string& by, const std::string& potential = "") {
   const TemporaryFolder folder;
   std::string text = shipped_text;
@@ -103,7 +103,7 @@ TEST(Honeycomb, AtomsOfTwoSpeciesAttractAsTheIntegralSays) {
   const Well well = PairIntegral({mean.epsilon, mean.sigma, 1.2}, shell, shell).parallel_well();
   const RegistrySpread atoms = registry_spread(laws_of(h, 1.2), column, column, well.distance, 200);
   EXPECT_NEAR(atoms.mean / well.energy, 1, 2e-3);
-  // By the law of one species alone it is another energy: the laws are not mixed up.
+  // The law of one species alone gives another energy: the laws are not mixed up.
   SpeciesLaws wrong = laws_of(h, 1.2);
   wrong[2] = wrong[0];
   EXPECT_GT(std::abs(registry_spread(wrong, column, column, well.distance, 50).mean / well.energy - 1), 0.02);
