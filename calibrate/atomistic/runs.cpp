@@ -9,8 +9,32 @@
 
 #include "io/clocks.hpp"
 #include "io/files.hpp"
+#include "io/plain_text.hpp"
 
 namespace ropewalk::calibrate {
+
+PairStyle pair_style_of(const Potential& potential, const std::string& why) {
+  const auto refuse = [&](const std::string& line) {
+    throw InputError({potential.file, 0, "--potential"},
+                     fmt::format("has the line \"{}\", {}", printable(line, 60), why),
+                     "take one with pair_style STYLE and pair_coeff * * FILE C");
+  };
+  const auto words_of = [](const std::string& line) {
+    std::vector<std::string> words;
+    std::istringstream stream(line);
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+  };
+  if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
+  const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
+  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0)
+    refuse(potential.commands[0]);
+  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
+    refuse(potential.commands[1]);
+  PairStyle own = {style[1], style[1], coeff[3], coeff[4]};
+  for (std::size_t k = 2; k < style.size(); ++k) own.with_arguments += " " + style[k];
+  return own;
+}
 
 std::string header_commands(const std::string& boundary, double skin) {
   return fmt::format(

@@ -107,6 +107,13 @@ Envelope measured_envelope(RunContext& run, const EnvelopeSpecimen& specimen, co
 std::string uniform_cell_commands(const Potential& potential, const std::string& data);
 // The period of a cell with no twist, or with very little where the period of the tube is long. `a`: lattice constant, nm.
 LatticeVector untwisted_cell(Chirality c, double min_length, double a = graphene_lattice_constant);
+// The pair style of a potential and the words of its one pair_coeff line, from which several groups of atoms each get
+// a style of their own. Throws InputError, which says `why` in its line, where the potential is not one pair_style and one
+// pair_coeff line of one species.
+struct PairStyle {
+  std::string name, with_arguments, file, species;
+};
+PairStyle pair_style_of(const Potential& potential, const std::string& why);
 std::string header_commands(const std::string& boundary, double skin);
 // The atoms of each tube (nm), as tube_atoms() orders them, in a box about the axis. Each tube is a type of its own, or
 // two where its sublattices are of two species.

@@ -4,44 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
-#include "io/plain_text.hpp"
 
 namespace ropewalk::calibrate {
-namespace {
-
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  std::istringstream stream(line);
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-}  // namespace
-
 std::string walled_pair_commands(const Potential& potential, const LennardJones& law, std::size_t walls) {
-  const auto refuse = [&](const std::string& line) {
-    throw InputError({potential.file, 0, "--potential"},
-                     fmt::format("has the line \"{}\", which several walls cannot have each", printable(line, 60)),
-                     "take one with pair_style STYLE and pair_coeff * * FILE C");
-  };
-  if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
-  const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
-  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0)
-    refuse(potential.commands[0]);
-  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
-    refuse(potential.commands[1]);
-  std::string own = style[1];
-  for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
+  const PairStyle own = pair_style_of(potential, "which several walls cannot have each");
   std::string styles = "pair_style hybrid/overlay", coefficients;
   for (std::size_t k = 1; k <= walls; ++k) {
-    styles += " " + own;
+    styles += " " + own.with_arguments;
     coefficients +=
-        fmt::format("pair_coeff * * {}{} {}", style[1], walls > 1 ? fmt::format(" {}", k) : "", coeff[3]);
-    for (std::size_t l = 1; l <= walls; ++l) coefficients += l == k ? " " + coeff[4] : " NULL";
+        fmt::format("pair_coeff * * {}{} {}", own.name, walls > 1 ? fmt::format(" {}", k) : "", own.file);
+    for (std::size_t l = 1; l <= walls; ++l) coefficients += l == k ? " " + own.species : " NULL";
     coefficients += "\n";
   }
   if (walls == 1) return styles + "\n" + coefficients;

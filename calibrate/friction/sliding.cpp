@@ -5,11 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "atomistic/runs.hpp"
 #include "io/files.hpp"
-#include "io/plain_text.hpp"
 
 namespace ropewalk::calibrate {
 namespace {
@@ -17,13 +15,6 @@ namespace {
 constexpr double place_step = 0.025, way = 0.5;  // nm
 constexpr double temperature = 300;              // K
 constexpr double sampled_every = 0.1;            // ps
-
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  std::istringstream stream(line);
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 std::vector<Vector3> turned(std::vector<Vector3> atoms, double angle, const Vector3& by) {
   const Eigen::AngleAxisd turn(angle, Vector3::UnitZ());
@@ -79,24 +70,12 @@ Measured mean_without_period(const std::vector<double>& force, const std::vector
 }
 
 std::string pair_commands(const Potential& potential, const AtomLaw& law) {
-  const auto refuse = [&](const std::string& line) {
-    throw InputError({potential.file, 0, "--potential"},
-                     fmt::format("has the line \"{}\", which two tubes cannot both have", printable(line, 60)),
-                     "take one with pair_style STYLE and pair_coeff * * FILE C");
-  };
-  if (potential.commands.size() != 2) refuse(potential.commands.empty() ? "" : potential.commands.back());
-  const std::vector<std::string> style = words_of(potential.commands[0]), coeff = words_of(potential.commands[1]);
-  if (style.size() < 2 || style[0] != "pair_style" || style[1].rfind("hybrid", 0) == 0)
-    refuse(potential.commands[0]);
-  if (coeff.size() != 5 || coeff[0] != "pair_coeff" || coeff[1] != "*" || coeff[2] != "*")
-    refuse(potential.commands[1]);
-  std::string own = style[1];
-  for (std::size_t k = 2; k < style.size(); ++k) own += " " + style[k];
+  const PairStyle own = pair_style_of(potential, "which two tubes cannot both have");
   return fmt::format(
       "pair_style hybrid {} {} lj/cut {:.8g}\npair_coeff * * {} 1 {} {} NULL\npair_coeff * * {} 2 {} NULL {}\n"
       "pair_coeff 1 2 lj/cut {:.10g} {:.10g}\n",
-      own, own, law.cutoff / angstrom, style[1], coeff[3], coeff[4], style[1], coeff[3], coeff[4], law.epsilon,
-      law.sigma / angstrom);
+      own.with_arguments, own.with_arguments, law.cutoff / angstrom, own.name, own.file, own.species, own.name, own.file,
+      own.species, law.epsilon, law.sigma / angstrom);
 }
 
 RelaxedStrength relaxed_strength(const SlidingTubes& tubes, const Register& at, Slip slip,
