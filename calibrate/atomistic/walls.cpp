@@ -58,8 +58,7 @@ class Walls {
     }
   }
 
-  // Energies of the walls in all states, by which the first one is the start of the second, and so on; for both
-  // specimens.
+  // Energies of the walls in all states, for both specimens. Each state is relaxed from the one before.
   std::array<std::vector<Result>, 2> strained(const std::string& name, const std::vector<State>& states,
                                               Holding holding) {
     std::array<std::vector<Result>, 2> out;
@@ -122,8 +121,8 @@ class Walls {
     return most;
   }
 
-  // Walls that are free to slide have soft modes, which cost hundreds of steps and hold no energy: there forces of
-  // 5e-3 eV/Angstrom are left, worth some 1e-5 eV.
+  // Walls that are free to slide have soft modes, which cost hundreds of steps and hold no energy: the
+  // minimiser may leave forces of 5e-3 eV/Angstrom, worth some 1e-5 eV.
   static std::string relaxing(Holding holding) {
     return fmt::format("variable ftol equal {}\n", holding == Holding::all ? "1e-3" : "5e-3");
   }

@@ -30,7 +30,7 @@ constexpr double right_angle = 0.5 * units::pi;
 // distance, and would cost ten times the pairs.
 constexpr double relaxing_cutoff = 1.2;
 
-// The stiffness as the walls carry, with the rows of the other way and of each wall after its own.
+// Stiffness of the tube with the walls that carry. The rows of the other holding and of each wall follow its own rows.
 Stiffness as_carried(const WalledStiffness& walled, bool outer) {
   Stiffness out = outer ? walled.outer : walled.all;
   const Stiffness& other = outer ? walled.all : walled.outer;

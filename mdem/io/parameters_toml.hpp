@@ -38,7 +38,7 @@ void refuse_other_than_carbon(const ParameterSet& set, const std::string& what);
 
 class TomlTable;
 struct Bounds;
-// Throw InputError for what is no symbol of an element, and no name of a honeycomb beside carbon.
+// Throw InputError where a word is no chemical symbol, or is no name that a honeycomb other than carbon may have.
 void check_element(const TomlTable& table, const std::string& key, const std::string& symbol);
 void check_name_of_honeycomb(const TomlTable& table, const std::string& key, const std::string& name);
 // One number `key` of a section with its unit, standard error and origin; it must have this unit.

@@ -47,7 +47,7 @@ class FixGrip : public LMP::Fix {
   RankMessages ranks_;
   std::vector<Place> places_;  // places of all loads, sorted by elements
   // Elements of loads that read others (Load::reads), which every rank knows: numbers in the scene, in rising order,
-  // and their places in the state below. The images of a slice and their originals are so.
+  // and their places in the state below. Images of a slice and their originals are found alike.
   std::vector<int> known_, known_at_;
   std::vector<std::vector<int>> reads_;  // elements that each load reads
   std::vector<double> numbers_;          // message to all ranks
