@@ -17,13 +17,24 @@ using Eigen::VectorXd;
 
 Block symmetric_part(const Block& b) { return 0.5 * (b + b.transpose()); }
 
+// Some motions fall. Where pivots after them turn as well, the inverse grows without bound along the chain.
+constexpr int most_turned = 4;
+
+// The first shift, from `shift` on, with which decompose(shift) turns few pivots.
+template <class Decompose>
+void with_few_turned(double shift, const Decompose& decompose) {
+  constexpr double least = 1e-4, most = 1e8;  // 1/ps^2; no motion is as fast as the last one
+  while (decompose(shift) > most_turned && shift < most) shift = std::max(4 * shift, least);
+}
+
 // The inverse of a pivot. One that is not positive is taken with the signs of its negative eigenvalues turned.
-Block inverse_of(const Block& d) {
+Block inverse_of(const Block& d, int& turned) {
   constexpr double least = 1e-3;
   const Eigen::LLT<Block> factor(d);
   if (factor.info() == Eigen::Success && factor.matrixL().toDenseMatrix().diagonal().minCoeff() > 1e-9)
     return factor.solve(Block::Identity());
   const Eigen::SelfAdjointEigenSolver<Block> e(d);
+  ++turned;
   const Eigen::Matrix<double, 6, 1> values = e.eigenvalues().cwiseAbs().cwiseMax(least);
   return e.eigenvectors() * values.cwiseInverse().asDiagonal() * e.eigenvectors().transpose();
 }
@@ -114,41 +125,43 @@ Preconditioner::Preconditioner(const Topology& topology, const State& state, con
                                const BlockMatrix& k, const VectorXd& mass, double shift,
                                const std::vector<char>& held)
     : topology_(topology), sections_(sections) {
-  decompose_chains(k, mass, shift, held);
-  if (sections_.count == 0) return;
-  find_section_motions(state, held);
-  decompose_sections(k, mass, shift);
-}
-
-void Preconditioner::decompose_chains(const BlockMatrix& k, const VectorXd& mass, double shift,
-                                      const std::vector<char>& held) {
   const auto n = static_cast<std::size_t>(k.rows());
   inverse_.resize(n);
   lower_.assign(n, Block::Zero());
+  for (int t = 0; t < topology.tubes(); ++t)
+    with_few_turned(shift, [&](double s) { return decompose_chain(t, k, mass, s, held); });
+  if (sections_.count == 0) return;
+  find_section_motions(state, held);
+  with_few_turned(shift, [&](double s) { return decompose_sections(k, mass, s); });
+}
+
+int Preconditioner::decompose_chain(int tube, const BlockMatrix& k, const VectorXd& mass, double shift,
+                                    const std::vector<char>& held) {
+  int turned = 0;
   const auto is_held = [&](std::size_t i, int c) { return held[6 * i + static_cast<std::size_t>(c)] != 0; };
-  for (int t = 0; t < topology_.tubes(); ++t)
-    for (int e = topology_.tube_begin[t]; e < topology_.tube_begin[t + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(e);
-      Block d = symmetric_part(k.diagonal[i]);
-      d.diagonal() += shift * mass.segment<6>(6 * static_cast<Eigen::Index>(e));
-      for (int c = 0; c < 6; ++c)
-        if (is_held(i, c)) {
-          d.row(c).setZero();
-          d.col(c).setZero();
-          d(c, c) = 1;
-        }
-      if (e > topology_.tube_begin[t]) {
-        Block above = k.at(e - 1, e);
-        for (int c = 0; c < 6; ++c) {
-          if (is_held(i, c)) above.col(c).setZero();
-          if (is_held(i - 1, c)) above.row(c).setZero();
-        }
-        lower_[i] = above.transpose() * inverse_[i - 1];
-        d -= lower_[i] * above;
-        d = symmetric_part(d);
+  for (int e = topology_.tube_begin[tube]; e < topology_.tube_begin[tube + 1]; ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    Block d = symmetric_part(k.diagonal[i]);
+    d.diagonal() += shift * mass.segment<6>(6 * static_cast<Eigen::Index>(e));
+    for (int c = 0; c < 6; ++c)
+      if (is_held(i, c)) {
+        d.row(c).setZero();
+        d.col(c).setZero();
+        d(c, c) = 1;
       }
-      inverse_[i] = inverse_of(d);
+    if (e > topology_.tube_begin[tube]) {
+      Block above = k.at(e - 1, e);
+      for (int c = 0; c < 6; ++c) {
+        if (is_held(i, c)) above.col(c).setZero();
+        if (is_held(i - 1, c)) above.row(c).setZero();
+      }
+      lower_[i] = above.transpose() * inverse_[i - 1];
+      d -= lower_[i] * above;
+      d = symmetric_part(d);
     }
+    inverse_[i] = inverse_of(d, turned);
+  }
+  return turned;
 }
 
 namespace {
@@ -195,7 +208,7 @@ void Preconditioner::find_section_motions(const State& state, const std::vector<
   }
 }
 
-void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& mass, double shift) {
+int Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& mass, double shift) {
   const auto section = [&](int e) { return sections_.part[static_cast<std::size_t>(e)]; };
   int reach = 0;
   for (int i = 0; i < k.rows(); ++i)
@@ -230,8 +243,10 @@ void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& ma
     }
   }
   const double largest = band_.row(0).maxCoeff();
+  int turned = 0;
   for (int j = 0; j < n; ++j) {
     double d = band_(0, j);
+    if (d < -1e-12 * largest) ++turned;
     if (!(d > 1e-12 * largest)) d = std::max(std::fabs(d), 1e-6 * largest);
     const double root = std::sqrt(d);
     band_(0, j) = root;
@@ -241,6 +256,7 @@ void Preconditioner::decompose_sections(const BlockMatrix& k, const VectorXd& ma
       if (const double v = band_(c, j); v != 0)
         for (int r = c; r <= most; ++r) band_(r - c, j + c) -= band_(r, j) * v;
   }
+  return turned;
 }
 
 void Preconditioner::add_sections(const VectorXd& r, VectorXd& z) const {

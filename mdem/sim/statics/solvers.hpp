@@ -32,16 +32,18 @@ Sections sections_of(const Topology& topology, const State& state);
 // An approximate inverse, symmetric and positive.
 class Preconditioner {
  public:
-  // A preconditioner of K + shift M, with the identity in the rows of held unknowns.
+  // A preconditioner of K + shift M, with the identity in the rows of held unknowns. A chain of which many motions
+  // fall is taken with a larger shift, and the sections likewise.
   Preconditioner(const Topology& topology, const State& state, const Sections& sections, const BlockMatrix& k,
                  const Eigen::VectorXd& mass, double shift, const std::vector<char>& held);
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 
  private:
-  void decompose_chains(const BlockMatrix& k, const Eigen::VectorXd& mass, double shift,
-                        const std::vector<char>& held);
+  // How many pivots were not positive.
+  int decompose_chain(int tube, const BlockMatrix& k, const Eigen::VectorXd& mass, double shift,
+                      const std::vector<char>& held);
   void find_section_motions(const State& state, const std::vector<char>& held);
-  void decompose_sections(const BlockMatrix& k, const Eigen::VectorXd& mass, double shift);
+  int decompose_sections(const BlockMatrix& k, const Eigen::VectorXd& mass, double shift);
   void add_sections(const Eigen::VectorXd& r, Eigen::VectorXd& z) const;
 
   using Blocks = std::vector<Block, Eigen::aligned_allocator<Block>>;
