@@ -49,7 +49,7 @@ def read_while_another_steps() -> None:
             repr(simulation)
             try:
                 simulation.measure("beta_deg")
-            except ropewalk.Error:  # it says that another thread moves the simulation
+            except ropewalk.BusyError:
                 pass
 
     reader = threading.Thread(target=read)
