@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <stdexcept>
 
 #include "io/clocks.hpp"
 #include "io/files.hpp"
@@ -48,13 +47,11 @@ SteppedScene::SteppedScene(std::shared_ptr<const Model> model, std::vector<std::
 }
 
 SteppedScene::StepGuard::StepGuard(SteppedScene& of) : of(of) {
-  if (of.stepping_.exchange(true))
-    throw std::runtime_error("the simulation is at work in another thread, or calls this function itself");
+  if (of.stepping_.exchange(true)) throw BusyError();
 }
 
 const Simulation& SteppedScene::simulation() const {
-  if (stepping_)
-    throw std::runtime_error("the simulation is at work in another thread, or calls this function itself");
+  if (stepping_) throw BusyError();
   return simulation_;
 }
 

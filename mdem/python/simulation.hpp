@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@
 #include "python/scene.hpp"
 
 namespace ropewalk::python {
+
+struct BusyError : std::runtime_error {
+  BusyError() : runtime_error("the simulation is at work in another thread, or calls this function itself") {}
+};
 
 class SteppedScene {
  public:

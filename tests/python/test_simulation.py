@@ -422,7 +422,7 @@ def say_when_at_work():
     while True:
         try:
             simulation.time_ps
-        except RuntimeError:
+        except ropewalk.BusyError:
             print("at work", flush=True)
             return
 
@@ -466,7 +466,7 @@ class InterruptTest(FolderTest):
             try:
                 self.assertIn("Simulation of", repr(simulation))
                 simulation.time_ps
-            except RuntimeError as e:
+            except ropewalk.BusyError as e:
                 self.assertIn("another thread", str(e))
                 refused += 1
         thread.join()

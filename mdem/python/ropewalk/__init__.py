@@ -48,7 +48,7 @@ _load_core()
 from ._core import version as __version__  # noqa: E402
 from .atoms import Atoms, atoms, atoms_universe, coarsen  # noqa: E402
 from .energy import StateEnergy, energy  # noqa: E402
-from .errors import Error, InputError, NumericalError, ProgramError  # noqa: E402
+from .errors import BusyError, Error, InputError, NumericalError, ProgramError  # noqa: E402
 from .frames import Frame, Frames  # noqa: E402
 from .log import Log, Mean  # noqa: E402
 from .observables import Observable, observables  # noqa: E402
@@ -66,9 +66,9 @@ from .state import Elements, Instant, State, write_state  # noqa: E402
 from .threads import set_threads, threads  # noqa: E402
 
 __all__ = [
-    "Atoms", "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant", "Limit",
-    "Log", "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run", "Scene",
-    "Simulation", "State", "StateEnergy", "ValidationCase", "atoms", "atoms_universe", "calibrate", "coarsen",
+    "Atoms", "BusyError", "Campaign", "Check", "Elements", "Energies", "Error", "Frame", "Frames", "InputError", "Instant",
+    "Limit", "Log", "Mean", "NumericalError", "Observable", "ParameterSet", "ProgramError", "Quantity", "Relaxed", "Run",
+    "Scene", "Simulation", "State", "StateEnergy", "ValidationCase", "atoms", "atoms_universe", "calibrate", "coarsen",
     "compare", "convert", "energy", "errors", "gather", "modes", "observables", "open", "parameter_sets", "parametrize",
     "picture", "rest", "resume", "run", "set_threads", "sweep", "threads", "threshold", "validate", "view", "write_state",
 ]

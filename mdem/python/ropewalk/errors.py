@@ -36,6 +36,10 @@ class NumericalError(Error, ArithmeticError):
         self.element = element
 
 
+class BusyError(Error, RuntimeError):
+    """Another thread moves the simulation, or a hook of its own asks for what moves it."""
+
+
 class ProgramError(Error, RuntimeError):
     """A program of Ropewalk is missing, or ended for a reason that is neither of the other two.
 

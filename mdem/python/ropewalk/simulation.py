@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Optional, Union, overload
 
 from . import _core
-from .errors import Error, InputError
+from .errors import BusyError, Error, InputError
 from .files import read_regular, write_whole
 from .forces import OwnForce, checked
 from .numbers import finite, whole
@@ -115,7 +115,7 @@ class Simulation:
         """Scene, step and time, ps."""
         try:
             return f"<Simulation of {self._scene.name}: step {self.step_number}, {self.time_ps:g} ps>"
-        except RuntimeError:  # at work
+        except BusyError:
             return f"<Simulation of {self._scene.name}, at work>"
 
     @contextmanager
@@ -124,7 +124,7 @@ class Simulation:
         if not self._moving.acquire(blocking=False):
             if self._mover == threading.get_ident():
                 raise Error(f"a hook, an observer or a force cannot {what} the simulation that calls it")
-            raise RuntimeError("the simulation is at work in another thread")
+            raise BusyError("the simulation is at work in another thread")
         self._mover = threading.get_ident()
         try:
             yield
