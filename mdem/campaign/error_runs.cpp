@@ -108,6 +108,8 @@ class InputsOf {
         varied(name, sigma, "", {n.key});
       } else if (of_section && sigma > 0) {
         out_.not_varied.push_back(fmt::format("{}{} (known to {:.1g})", name, of, sigma));
+      } else if (of_section && n.standard_error.value_or(0) > 0) {
+        out_.not_varied.push_back(fmt::format("{}{} (is zero)", name, of));
       }
     }
     if (scene_.contact.law == "line") {

@@ -56,10 +56,17 @@ void say_source(const Scene& scene, const Prepared& p) {
     fmt::print("free length {}{:.5g} nm, from centre to centre of the innermost elements held at both ends\n",
                least < most ? fmt::format("{:.5g} to ", least) : "", most);
   }
-  for (const ParameterSet& set : scene.sets)
-    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {:.5g} nN nm^2, GJ {:.5g} nN nm^2, {} bonds\n", set.name,
-               set.path, set.bond.stretch * units::eV_in_nN_nm, set.bond.bend * units::eV_in_nN_nm,
-               set.bond.twist * units::eV_in_nN_nm, scene.bond.anharmonic ? "anharmonic" : "harmonic");
+  for (const ParameterSet& set : scene.sets) {
+    const BondStiffness& k = set.bond;
+    std::string bend = fmt::format("{:.5g}", (k.bend + k.bend_difference) * units::eV_in_nN_nm);
+    if (k.bend_difference != 0) bend += fmt::format(" and {:.5g}", (k.bend - k.bend_difference) * units::eV_in_nN_nm);
+    fmt::print("parameters {} ({}), EA {:.5g} nN, EI {} nN nm^2, GJ {:.5g} nN nm^2, {} bonds\n", set.name, set.path,
+               k.stretch * units::eV_in_nN_nm, bend, k.twist * units::eV_in_nN_nm,
+               scene.bond.anharmonic ? "anharmonic" : "harmonic");
+    if (vector(k.natural).norm() > 0)
+      fmt::print("at rest {} has curvatures of {:.4g} and {:.4g}/nm about its axes and a twist of {:.4g} deg/nm\n",
+                 set.name, k.natural.x, k.natural.y, k.natural.z / units::degree);
+  }
   for (const std::string& grade : grades_of(scene)) fmt::print("grade of {}\n", grade);
   if (t.tubes() > 1)
     if (const std::string size =

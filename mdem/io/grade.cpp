@@ -27,7 +27,7 @@ void add(Grade& grade, Level level, std::string reason) {
 }
 
 void grade_stiffness(const ParameterSet& set, Grade& grade) {
-  for (const char* key : {"EA", "EI", "GJ"}) {
+  for (const char* key : {"EA", "EI", "EI_1", "EI_2", "GJ"}) {
     const Quantity* q = find_quantity(set, std::string("bond.") + key);
     if (!q || (q->standard_error && *q->standard_error <= known_well * q->value)) continue;
     if (!q->standard_error) {

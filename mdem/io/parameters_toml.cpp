@@ -19,6 +19,17 @@
 
 namespace ropewalk {
 
+std::string too_turned(const BondStiffness& bond, double element_length) {
+  const double turn = element_length * vector(bond.natural).norm();
+  if (!(turn > most_natural_turn)) return "";
+  return fmt::format("is {:.6g} nm, over which the natural shape turns by {:.3g} degrees; {:.3g} are allowed",
+                     element_length, turn / units::degree, most_natural_turn / units::degree);
+}
+
+std::string longest_for(const BondStiffness& bond) {
+  return fmt::format("take at most {:.6g} nm", std::floor(1e3 * most_natural_turn / vector(bond.natural).norm()) / 1e3);
+}
+
 Quantity start_quantity(const std::string& key, double value, const char* unit) {
   return {key, value, unit, 0.0, "derived", "", "of the bond when the pull was made"};
 }
@@ -240,33 +251,37 @@ class Reader {
     set_.radius = quantity(t, "contact_radius", "nm", Bounds::positive(1e3));
     set_.mass_per_length = quantity(t, "mass_per_length", "u/nm", Bounds::positive(1e9)) * units::atomic_mass;
     set_.element_length = quantity(t, "element_length", "nm", Bounds::range(0.05, 1e3));
-    for (const char* key : {"twist_per_length", "curvature"})
+    if (t.has("curvature"))
+      throw t.error("curvature", "has no direction", "give curvature_1 or curvature_2, about the body's first or second axis");
+    const std::pair<const char*, double*> natural[] = {{"curvature_1", &set_.bond.natural.x},
+                                                       {"curvature_2", &set_.bond.natural.y},
+                                                       {"twist_per_length", &set_.bond.natural.z}};
+    for (const auto& [key, value] : natural)
       if (t.has(key))
-        throw t.error(key, "is not in the model: elements are straight at rest, and bend alike in all directions",
-                      "leave it out: a natural twist changes nothing where a filament bends alike in all directions");
+        *value = quantity(t, key, value == &set_.bond.natural.z ? "rad/nm" : "1/nm", Bounds::range(-10, 10));
+    if (const std::string turned = too_turned(set_.bond, set_.element_length); !turned.empty())
+      throw t.error("element_length", turned, longest_for(set_.bond));
   }
 
-  // Bonds have one stiffness of bending. A filament with a natural twist, bent over many turns of it, has the
-  // harmonic mean of its two.
-  void refuse_two_bends(const TomlTable& t) const {
-    if (!t.has("EI_1") && !t.has("EI_2")) return;
+  // The stiffnesses about the two axes of the body, in place of EI.
+  void read_two_bends(const TomlTable& t) {
     const char* key = t.has("EI_1") ? "EI_1" : "EI_2";
-    if (!t.has("EI_1") || !t.has("EI_2"))
-      throw t.error(key, "is one of two stiffnesses, and bonds bend alike in all directions", "give EI");
+    if (!set_.filament) throw t.error(key, "is of a filament, and the set has [tube]", "give EI: a tube is round");
+    if (t.has("EI")) throw t.error(key, "stands beside EI", "give EI_1 and EI_2, or EI");
     const Bounds stiffness = Bounds::positive(1e9);
-    const double a = read_quantity(t, "EI_1", "nN nm^2", stiffness).value,
-                 b = read_quantity(t, "EI_2", "nN nm^2", stiffness).value;
-    throw t.error("EI_1", "and EI_2 are two stiffnesses, and bonds bend alike in all directions",
-                  fmt::format("give EI; a filament that twists many times over a bend has EI = 2/(1/EI_1 + 1/EI_2) = "
-                              "{:.6g} nN nm^2",
-                              2 / (1 / a + 1 / b)));
+    const double one = quantity(t, "EI_1", "nN nm^2", stiffness) * units::nN_nm,
+                 two = quantity(t, "EI_2", "nN nm^2", stiffness) * units::nN_nm;
+    set_.bond.bend = 0.5 * (one + two);
+    set_.bond.bend_difference = 0.5 * (one - two);
   }
 
   void read_bond(const TomlTable& t) {
     const Bounds stiffness = Bounds::positive(1e9);
-    refuse_two_bends(t);
     set_.bond.stretch = quantity(t, "EA", "nN", stiffness) * units::nN_nm;
-    set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
+    if (t.has("EI_1") || t.has("EI_2"))
+      read_two_bends(t);
+    else
+      set_.bond.bend = quantity(t, "EI", "nN nm^2", stiffness) * units::nN_nm;
     set_.bond.twist = quantity(t, "GJ", "nN nm^2", stiffness) * units::nN_nm;
     if (t.has("kGA")) set_.bond.shear = quantity(t, "kGA", "nN", stiffness) * units::nN_nm;
     if (set_.filament)

@@ -19,6 +19,10 @@ std::string with_start_of_pull(const std::string& text, const std::string& path)
 // A number of it, as files have it.
 Quantity start_quantity(const std::string& key, double value, const char* unit);
 
+// Why elements of this length (nm) are too long for the natural shape of a bond, and what to do; empty: they are not.
+std::string too_turned(const BondStiffness& bond, double element_length);
+std::string longest_for(const BondStiffness& bond);
+
 // Null if the set has no such number.
 const Quantity* find_quantity(const ParameterSet& set, const std::string& key);
 // Covariance of these quantities, in their units: of their standard errors and correlations. A quantity that the

@@ -102,7 +102,9 @@ void BondVBond::apply(int i, int j) {
   add(atom->torque[j], f.torque_j);
   if (evflag) tally(i, j, f, separation);
   double** q = orientations_;
-  const double angle = bond_twist_angle(frame_of(quaternion(q[i])), frame_of(quaternion(q[j])));
+  const TubeType& type = type_of(*model_, *atom, i);
+  const double angle =
+      bond_twist_angle(type.bond, type.element_length, frame_of(quaternion(q[i])), frame_of(quaternion(q[j])));
   if (std::fabs(angle) >= 0.5 * units::pi) refuse_slip(element_of(*atom, i));
 }
 

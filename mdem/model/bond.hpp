@@ -28,6 +28,17 @@
 //
 // with the angles phi and delta themselves, so that its energy does not depend on the length of the elements.
 //
+// A filament may be curved and twisted at rest, by kappa_0 = (curvature about e1, about e2, twist per length) in its body
+// frame. With P = exp(a kappa_0/2), the rotation over half a bond, the harmonic bond acts on the frames R_i P and R_j P^T,
+// which are one frame at rest. Forces and torques are vectors in space and need no turning back. A chain at rest is a
+// helix of kappa_0 without energy. Where the stiffnesses about e1 and e2 differ, EI is their mean, D = (EI_1 - EI_2)/2, and
+//
+//   bend   + D/(2a) (w_1^2 - w_2^2),   w = the axial vector of R_i^T R_j     ~ EI_1 delta_1^2/(2a) + EI_2 delta_2^2/(2a)
+//   shear  + 6 S/a (n_2^2 - n_1^2),    S = (s_1 EI_1 - s_2 EI_2)/2, n_k = (e_k,i + e_k,j).d/2
+//
+// in these frames, with s = (s_1 EI_1 + s_2 EI_2)/(2 EI) in the sum above. Each w_k and n_k changes at most its sign where
+// the chain is read from its other end.
+//
 // Units eV, nm. Net force and net torque vanish identically.
 // Source: V. A. Kuzkin, I. E. Asonov, Phys. Rev. E 86, 051301 (2012), DOI 10.1103/PhysRevE.86.051301.
 #pragma once
@@ -36,6 +47,7 @@
 #include <cmath>
 
 #include "model/anharmonic.hpp"
+#include "model/contract.hpp"
 #include "model/forms.hpp"
 #include "model/units.hpp"
 
@@ -45,11 +57,47 @@ using Vector3 = Eigen::Vector3d;
 inline forms::Vec plain(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Vector3 vector(const forms::Vec& v) { return {v.x, v.y, v.z}; }
 
+using forms::BondShape;
 using forms::BondStiffness;
 
-// s of a bond of length a.
-inline double shear_share(const BondStiffness& k, double a) {
+// s of a bond of length a that bends alike in all directions.
+inline double even_shear_share(const BondStiffness& k, double a) {
   return k.shear > 0 ? 1 / (1 + 12 * k.bend / (k.shear * a * a)) : 1.0;
+}
+
+// Whether a bond has a natural shape or two stiffnesses of bending.
+inline bool is_shaped(const BondStiffness& k) {
+  return k.bend_difference != 0 || k.natural.x != 0 || k.natural.y != 0 || k.natural.z != 0;
+}
+
+// The largest rotation of a natural shape over one bond: beyond it, elements no longer follow the shape.
+inline constexpr double most_natural_turn = 0.5 * units::pi;
+
+// The same bond, straight at rest and as stiff in all directions as in the mean.
+inline BondStiffness straightened(BondStiffness k) {
+  k.bend_difference = 0;
+  k.natural = {};
+  return k;
+}
+
+inline BondShape bond_shape(const BondStiffness& k, double a) {
+  BondStiffness one = k, two = k;
+  one.bend += k.bend_difference;
+  two.bend -= k.bend_difference;
+  const double first = one.bend * even_shear_share(one, a), second = two.bend * even_shear_share(two, a);
+  const Vector3 turn = 0.5 * a * vector(k.natural);
+  const double angle = turn.norm();
+  Eigen::Matrix3d p = Eigen::Matrix3d::Identity();
+  if (angle > 0) p = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  return {is_shaped(k),
+          k.bend_difference == 0 ? even_shear_share(k, a) : 0.5 * (first + second) / k.bend,
+          0.5 * (first - second),
+          {plain(p.col(0)), plain(p.col(1)), plain(p.col(2))}};
+}
+
+// s of a bond of length a, in the mean of both directions.
+inline double shear_share(const BondStiffness& k, double a) {
+  return k.bend_difference == 0 ? even_shear_share(k, a) : bond_shape(k, a).share;
 }
 
 // kGA of a thin tube: GA = GJ/r^2, k = 2 (1 + nu)/(4 + 3 nu) with Poisson's ratio from EA r^2/GJ = 2 (1 + nu).
@@ -83,14 +131,37 @@ inline double bond_twist_angle(const forms::BodyFrame& i, const forms::BodyFrame
 }
 inline double bond_twist_angle(const Frame& i, const Frame& j) { return bond_twist_angle(plain(i), plain(j)); }
 
+// The frames of both elements, each turned by half of the natural rotation towards the other: R_i P and R_j P^T. Twist and
+// bend of a bond are those of these frames, and count from its natural shape.
+struct BondEnds {
+  Frame i, j;
+};
+inline BondEnds bond_ends(const BondStiffness& k, double a, const Frame& i, const Frame& j) {
+  if (!is_shaped(k)) return {i, j};
+  const forms::BodyFrame turn = bond_shape(k, a).turn, fi = forms::frame_turned(plain(i), turn),
+                         fj = forms::frame_turned_back(plain(j), turn);
+  return {{vector(fi.e1), vector(fi.e2), vector(fi.t)}, {vector(fj.e1), vector(fj.e2), vector(fj.t)}};
+}
+inline double bond_twist_angle(const BondStiffness& k, double a, const Frame& i, const Frame& j) {
+  const BondEnds ends = bond_ends(k, a, i, j);
+  return bond_twist_angle(ends.i, ends.j);
+}
+
 inline BondForce bond_energy_and_gradient(const BondStiffness& k, double a, const Vector3& separation,
                                           const Frame& i, const Frame& j) {
-  const forms::BodyFrame fi = plain(i), fj = plain(j);
   const forms::Vec r = plain(separation);
-  const double share = shear_share(k, a);
-  const forms::BondAction f = k.anharmonic.used
-                                  ? forms::anharmonic_bond(&k, share, a, r, fi, fj, bond_twist_angle(fi, fj))
-                                  : forms::harmonic_bond(&k, share, a, r, fi, fj);
+  forms::BondAction f;
+  if (is_shaped(k)) {
+    ROPEWALK_EXPECTS(!k.anharmonic.used);
+    const BondShape shape = bond_shape(k, a);
+    f = forms::shaped_bond(&k, shape.share, shape.shear_difference, a, r, forms::frame_turned(plain(i), shape.turn),
+                           forms::frame_turned_back(plain(j), shape.turn));
+  } else {
+    const forms::BodyFrame fi = plain(i), fj = plain(j);
+    const double share = even_shear_share(k, a);
+    f = k.anharmonic.used ? forms::anharmonic_bond(&k, share, a, r, fi, fj, bond_twist_angle(fi, fj))
+                          : forms::harmonic_bond(&k, share, a, r, fi, fj);
+  }
   return {{f.energy.stretch, f.energy.shear, f.energy.bend, f.energy.twist},
           vector(f.force_j),
           vector(f.torque_i),

@@ -53,6 +53,22 @@ FUNCTION BodyFrame turn_frame(Turn q) {
   return f;
 }
 
+// The frames R P and R P^T: f has the rotation R, and p has the rotation P.
+FUNCTION BodyFrame frame_turned(BodyFrame f, BodyFrame p) {
+  BodyFrame out;
+  out.e1 = vec_sum(vec_sum(vec_scaled(p.e1.x, f.e1), vec_scaled(p.e1.y, f.e2)), vec_scaled(p.e1.z, f.t));
+  out.e2 = vec_sum(vec_sum(vec_scaled(p.e2.x, f.e1), vec_scaled(p.e2.y, f.e2)), vec_scaled(p.e2.z, f.t));
+  out.t = vec_sum(vec_sum(vec_scaled(p.t.x, f.e1), vec_scaled(p.t.y, f.e2)), vec_scaled(p.t.z, f.t));
+  return out;
+}
+FUNCTION BodyFrame frame_turned_back(BodyFrame f, BodyFrame p) {
+  BodyFrame out;
+  out.e1 = vec_sum(vec_sum(vec_scaled(p.e1.x, f.e1), vec_scaled(p.e2.x, f.e2)), vec_scaled(p.t.x, f.t));
+  out.e2 = vec_sum(vec_sum(vec_scaled(p.e1.y, f.e1), vec_scaled(p.e2.y, f.e2)), vec_scaled(p.t.y, f.t));
+  out.t = vec_sum(vec_sum(vec_scaled(p.e1.z, f.e1), vec_scaled(p.e2.z, f.e2)), vec_scaled(p.t.z, f.t));
+  return out;
+}
+
 // sin(h)/h and cos(h) of the square of h, up to the last bit for h below 0.25 and to 1e-12 below 0.5.
 FUNCTION double sine_over(double h2) {
   return 1 + h2 * (-1.0 / 6 + h2 * (1.0 / 120 + h2 * (-1.0 / 5040 + h2 * (1.0 / 362880 - h2 * (1.0 / 39916800)))));
@@ -195,8 +211,18 @@ struct BondStiffness {
   double twist DEFAULT_0;    // GJ, eV nm
   double shear DEFAULT_0;    // kGA, eV/nm; 0: rigid in shear, as in the published model
   Anharmonic anharmonic DEFAULT_0;
+  double bend_difference DEFAULT_0;  // (EI_1 - EI_2)/2, eV nm; `bend` is the mean of both
+  Vec natural DEFAULT_0;             // at rest: curvature about e1 and e2 (1/nm), and twist per length (rad/nm)
 };
 typedef struct BondStiffness BondStiffness;
+
+// What a bond of one length needs that has a natural shape or two stiffnesses of bending.
+typedef struct {
+  int used;                 // 0: the bond has neither
+  double share;             // (s_1 EI_1 + s_2 EI_2)/(2 EI)
+  double shear_difference;  // (s_1 EI_1 - s_2 EI_2)/2, eV nm
+  BodyFrame turn;           // P, half of the natural rotation
+} BondShape;
 
 typedef struct {
   double stretch, shear, bend, twist;  // eV
@@ -247,6 +273,28 @@ FUNCTION BondAction harmonic_bond(GLOBAL const BondStiffness* k, double share, d
                              vec_scaled(b3, vec_cross(i.t, j.t)));
   out.torque_i = vec_sum(vec_scaled(-(0.5 * b2), vec_cross(d, i.t)), frames);
   out.torque_j = vec_difference(vec_scaled(-(0.5 * b2), vec_cross(d, j.t)), frames);
+  return out;
+}
+
+// The harmonic bond of the frames i = R_i P and j = R_j P^T, with its two stiffnesses of bending.
+FUNCTION BondAction shaped_bond(GLOBAL const BondStiffness* k, double share, double shear_difference, double a,
+                                Vec separation, BodyFrame i, BodyFrame j) {
+  BondAction out = harmonic_bond(k, share, a, separation, i, j);
+  const double length = sqrt(vec_norm2(separation)), bend = k->bend_difference / a, shear = 12 * shear_difference / a;
+  const Vec d = vec_divided(separation, length), m1 = vec_sum(i.e1, j.e1), m2 = vec_sum(i.e2, j.e2);
+  const double w1 = 0.5 * (vec_dot(i.t, j.e2) - vec_dot(i.e2, j.t)), w2 = 0.5 * (vec_dot(i.e1, j.t) - vec_dot(i.t, j.e1));
+  const double n1 = 0.5 * vec_dot(d, m1), n2 = 0.5 * vec_dot(d, m2);
+  out.energy.bend += 0.5 * bend * (w1 * w1 - w2 * w2);
+  out.energy.shear += 0.5 * shear * (n2 * n2 - n1 * n1);
+  const Vec about_1 = vec_difference(vec_cross(i.t, j.e2), vec_cross(i.e2, j.t)),
+            about_2 = vec_difference(vec_cross(i.e1, j.t), vec_cross(i.t, j.e1));
+  const Vec bending = vec_difference(vec_scaled(0.5 * bend * w1, about_1), vec_scaled(0.5 * bend * w2, about_2));
+  const Vec by_d = vec_scaled(0.5 * shear, vec_difference(vec_scaled(n2, m2), vec_scaled(n1, m1)));
+  out.force_j = vec_difference(out.force_j, vec_divided(vec_difference(by_d, vec_scaled(vec_dot(by_d, d), d)), length));
+  const Vec lean_i = vec_scaled(0.5 * shear, vec_difference(vec_scaled(n2, i.e2), vec_scaled(n1, i.e1))),
+            lean_j = vec_scaled(0.5 * shear, vec_difference(vec_scaled(n2, j.e2), vec_scaled(n1, j.e1)));
+  out.torque_i = vec_sum(vec_difference(out.torque_i, bending), vec_cross(d, lean_i));
+  out.torque_j = vec_sum(vec_sum(out.torque_j, bending), vec_cross(d, lean_j));
   return out;
 }
 

@@ -14,8 +14,10 @@
 //               epsilon_11, epsilon_12, epsilon_22 (eV), sigma_11, sigma_12, sigma_22 (nm)
 //   [filament]  in place of [tube] and meta.chirality, for anything slender without a lattice:
 //               contact_radius (nm, half of the distance at which the gap is zero), mass_per_length (u/nm; u:
-//               atomic mass constant), element_length (nm)
-//   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN)
+//               atomic mass constant), element_length (nm); optional, at rest: curvature_1, curvature_2 (1/nm, about the
+//               first and the second axis of the body) and twist_per_length (rad/nm, right-handed positive)
+//   [bond]      EA (nN), EI (nN nm^2), GJ (nN nm^2); optional: kGA (nN). A filament may have EI_1 and EI_2 (nN nm^2,
+//               about the two axes of the body) in place of EI.
 //   [bond.anharmonic]  optional: e3, e2s, es2, s3, e4, e3s, e2s2, es3, s4, b4 (nN), the terms of anharmonic.hpp, and
 //               min_strain, max_strain, max_shear, max_bend, the window in which they hold; needs [atomistic]
 //   [bond.pull]   optional, needs [bond.anharmonic]: force = { values = [9 numbers], standard_errors = [9 numbers] }
@@ -113,7 +115,7 @@ struct ParameterSet {
   double atoms_per_length = 0;    // 1/nm; 0 for a filament
   double mass_per_length = 0;     // mass per length of a filament, eV ps^2/nm^3
   double element_length = 0;    // nm
-  BondStiffness bond;           // eV/nm, eV nm; harmonic
+  BondStiffness bond;           // eV/nm, eV nm; harmonic, with the natural shape of a filament
   std::optional<Anharmonic> anharmonic;
   std::optional<Pull> pull;                          // part of `anharmonic`, as the file has it
   std::array<double, PULL_STEPS + 1> pull_errors{};  // standard errors of its forces, eV/nm

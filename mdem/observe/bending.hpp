@@ -8,9 +8,16 @@
 
 namespace ropewalk {
 
-// The derivative of the energy by the angle between the axes (eV): EI times the curvature where that is small.
-inline double bending_moment(const BondStiffness& k, double length, const Vector3& axis_i, const Vector3& axis_j) {
-  const double curvature = 2.0 * std::asin(std::min(0.5 * (axis_i - axis_j).norm(), 1.0)) / length;
+// The derivative of the energy by the angle between the axes (eV): EI times the change of curvature where that is small.
+// Bonds that are together so long; i and j: the frames at their ends.
+inline double bending_moment(const BondStiffness& k, double length, const Frame& i, const Frame& j) {
+  const BondEnds ends = bond_ends(k, length, i, j);
+  const double curvature = 2.0 * std::asin(std::min(0.5 * (ends.i.t - ends.j.t).norm(), 1.0)) / length;
+  if (k.bend_difference != 0) {
+    const double w1 = ends.i.t.dot(ends.j.e2) - ends.i.e2.dot(ends.j.t),
+                 w2 = ends.i.e1.dot(ends.j.t) - ends.i.t.dot(ends.j.e1), w = std::hypot(w1, w2);
+    return w > 0 ? curvature / w * std::hypot((k.bend + k.bend_difference) * w1, (k.bend - k.bend_difference) * w2) : 0;
+  }
   if (!k.anharmonic.used) return k.bend * curvature;
   return 2 * bend_energy(k.anharmonic, k.bend, curvature * curvature).by_curvature2 * curvature;
 }

@@ -33,8 +33,9 @@ Peaks peaks_of_tube(const Topology& topology, const State& state, int tube, cons
     raise(out[speed], state.velocity[i].norm(), e);
     if (e + 1 == to) break;
     const Frame next = frame_of(state.orientation[i + 1]);
-    const double bent = std::atan2(frame.t.cross(next.t).norm(), frame.t.dot(next.t));
-    const double twisted = std::fabs(bond_twist_angle(frame, next));
+    const BondEnds ends = bond_ends(type.bond, a, frame, next);
+    const double bent = std::atan2(ends.i.t.cross(ends.j.t).norm(), ends.i.t.dot(ends.j.t));
+    const double twisted = std::fabs(bond_twist_angle(ends.i, ends.j));
     raise(out[bend], bent, e);
     raise(out[twist], twisted, e);
     raise(out[kink_curvature], bent / a, e);

@@ -75,7 +75,9 @@ double twist_of(const Topology& topology, const State& state, int tube) {
   for (int e = topology.tube_begin[tube]; e + 1 < topology.tube_begin[tube + 1]; ++e) {
     const auto i = static_cast<std::size_t>(e);
     if (has_parted(topology.type_of(tube), state.position[i + 1] - state.position[i])) continue;
-    sum += bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+    const TubeType& type = topology.type_of(tube);
+    sum += bond_twist_angle(type.bond, type.element_length, frame_of(state.orientation[i]),
+                            frame_of(state.orientation[i + 1]));
     ++bonds;
   }
   return bonds > 0 ? sum / (bonds * topology.type_of(tube).element_length) : 0;

@@ -145,7 +145,7 @@ std::vector<Observable>& table() {
 
       {"beta_deg", "deg", "mean angle of the outermost tubes to the axis of their rope, over the middle third",
        Group::twist, [](const M& m) { return m.rope.beta / degree; }, real, "twist angle β"},
-      {"physical_twist_deg", "deg", "twist of the bonds of a tube, end to end, mean over the tubes", Group::twist,
+      {"physical_twist_deg", "deg", "twist of the bonds of a tube against the natural one, end to end, mean over the tubes", Group::twist,
        [](const M& m) { return m.rope.physical_twist / degree; }},
       {"geometric_twist_deg", "deg", "rotation of the tubes about the centre line of the rope, end to end",
        Group::twist, [](const M& m) { return m.rope.geometric_twist / degree; }},

@@ -14,18 +14,19 @@ constexpr double on_axis = 0.25;  // of the spacing: the azimuth of a tube neare
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-double twist_of_bond(const State& state, int i) {
-  return bond_twist_angle(frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
+// The frames of a bond, which twist and bend are read from: against its natural shape.
+BondEnds ends_of_bond(const TubeType& type, const State& state, int i) {
+  return bond_ends(type.bond, type.element_length, frame_of(state.orientation[i]), frame_of(state.orientation[i + 1]));
 }
 
 bool beyond(double value, double limit) { return limit > 0.0 && value > limit; }
 
-void count_bond(const TubeType& type, const State& state, const Validity& validity, int i, double twist,
-                RopeObservation& out) {
+void count_bond(const TubeType& type, const State& state, const Validity& validity, int i, const BondEnds& ends,
+                double twist, RopeObservation& out) {
   const double a = type.element_length;
   out.largest_bond_twist = std::max(out.largest_bond_twist, std::abs(twist));
   if (a <= 0.0) return;
-  const double bend = angle_between(axis_of(state.orientation[i]), axis_of(state.orientation[i + 1]));
+  const double bend = angle_between(ends.i.t, ends.j.t);
   const double strain = (state.position[i + 1] - state.position[i]).norm() / a - 1.0;
   out.kinked += beyond(bend / a, validity.kink_curvature);
   out.overtwisted += beyond(type.radius * std::abs(twist) / a, validity.twist_collapse);
@@ -39,9 +40,10 @@ void observe_bonds(const Topology& topology, const State& state, const std::vect
   for (int t = 0; t < topology.tubes(); ++t)
     for (int i = topology.tube_begin[t]; i + 1 < topology.tube_begin[t + 1]; ++i) {
       if (has_parted(topology.type_of(t), state.position[i + 1] - state.position[i])) continue;
-      const double twist = twist_of_bond(state, i);
+      const BondEnds ends = ends_of_bond(topology.type_of(t), state, i);
+      const double twist = bond_twist_angle(ends.i, ends.j);
       sum += twist;
-      count_bond(topology.type_of(t), state, validity[static_cast<std::size_t>(topology.tube_type[t])], i, twist,
+      count_bond(topology.type_of(t), state, validity[static_cast<std::size_t>(topology.tube_type[t])], i, ends, twist,
                  out);
     }
   if (topology.tubes() > 0) out.physical_twist = sum / topology.strands();

@@ -44,7 +44,7 @@ struct CrossSection {
 
 struct RopeObservation {
   double beta = 0;              // rad: mean angle of the outermost tubes to the local axis, middle third
-  double physical_twist = 0;    // rad: sum of bond twist angles along a tube, mean over tubes
+  double physical_twist = 0;    // rad: sum of bond twist angles along a tube, against the natural ones; mean over tubes
   double geometric_twist = 0;   // rad: rotation of the tubes about the centre line, end to end, mean over the
                                 // tubes that stay away from it; the writhe of a bent rope does not enter
   double ply_angle = 0;         // rad: of the centre lines of plied ropes to C, right-handed positive, middle third

@@ -153,7 +153,8 @@ void DemandsAhead::read_start(const Scene& scene, const Prepared& p) {
     const double a = p.topology.type_of(t).element_length;
     const auto begin = static_cast<std::size_t>(p.topology.tube_begin[static_cast<std::size_t>(t)]);
     for (std::size_t i = begin; i + 1 < begin + static_cast<std::size_t>(p.topology.length_of(t)); ++i) {
-      const Frame fi = frame_of(p.state.orientation[i]), fj = frame_of(p.state.orientation[i + 1]);
+      const auto [fi, fj] =
+          bond_ends(p.topology.type_of(t).bond, a, frame_of(p.state.orientation[i]), frame_of(p.state.orientation[i + 1]));
       bent_ = std::max(bent_, 2 * std::asin(std::min(0.5 * (fi.t - fj.t).norm(), 1.0)) / a);
       widen(twist_, bond_twist_angle(fi, fj) / a);
       widen(strain_, (p.state.position[i + 1] - p.state.position[i]).norm() / a - 1);

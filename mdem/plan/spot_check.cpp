@@ -95,7 +95,7 @@ double mean_bending_moment(const Topology& topology, const State& s) {
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
       sum +=
-          bending_moment(type.bond, type.element_length, axis_of(s.orientation[i]), axis_of(s.orientation[i + 1]));
+          bending_moment(type.bond, type.element_length, frame_of(s.orientation[i]), frame_of(s.orientation[i + 1]));
     }
   }
   return topology.bonds() > 0 ? sum / topology.bonds() * units::eV_in_nN_nm : 0.0;

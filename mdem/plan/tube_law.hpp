@@ -11,7 +11,10 @@ namespace ropewalk {
 
 class TubeLaw {
  public:
-  explicit TubeLaw(const TubeType& type) : bond_(type.bond), length_(type.element_length) {}
+  // Strain, twist and curvature count from the natural shape; of two stiffnesses of bending the smaller one counts.
+  explicit TubeLaw(const TubeType& type) : bond_(straightened(type.bond)), length_(type.element_length) {
+    bond_.bend -= std::fabs(type.bond.bend_difference);
+  }
 
   double energy(double strain, double twist, double curvature) const;  // eV/nm
   double tension(double strain, double twist) const;

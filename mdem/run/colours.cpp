@@ -20,8 +20,8 @@ void colour_bonds(const Topology& topology, const State& s, ElementColours& c) {
       const auto si = static_cast<std::size_t>(i), sj = si + 1;
       const Frame fi = frame_of(s.orientation[si]), fj = frame_of(s.orientation[sj]);
       const double energy = bond_energy(bond, a, Vector3(s.position[sj] - s.position[si]), fi, fj).total();
-      const double moment = bending_moment(bond, a, fi.t, fj.t);
-      const double twist = bond_twist_angle(fi, fj);
+      const double moment = bending_moment(bond, a, fi, fj);
+      const double twist = bond_twist_angle(bond, a, fi, fj);
       const double wi = i == from ? 1.0 : 0.5, wj = i + 2 == to ? 1.0 : 0.5;
       c.bond_energy[si] += 0.5 * energy;
       c.bond_energy[sj] += 0.5 * energy;

@@ -35,6 +35,21 @@ void warn_of_long_elements(const ParameterSet& set, double length, std::vector<s
         length, set.name, bend, 100 * error));
 }
 
+// Filaments start straight, which a natural curvature is not.
+void warn_of_straight_start(const Scene& scene, std::vector<std::string>& warnings) {
+  if (scene.from_file()) return;
+  for (const ParameterSet& set : scene.sets) {
+    const BondStiffness& k = set.bond;
+    const double energy = 0.5 * ((k.bend + k.bend_difference) * k.natural.x * k.natural.x +
+                                 (k.bend - k.bend_difference) * k.natural.y * k.natural.y);
+    if (energy > 0)
+      warnings.push_back(fmt::format(
+          "{} has a natural curvature of {:.4g}/nm and starts straight, with {:.3g} eV/nm of bending. Bring it to rest "
+          "first, by mode = \"relax\", and begin with its final.csv ([state]).",
+          set.name, std::hypot(k.natural.x, k.natural.y), energy));
+  }
+}
+
 // The `paper` law has one point on an element, so that crossed tubes feel where along their elements they cross.
 void warn_of_paper(const Scene& scene, const ContactLaw* law, std::vector<std::string>& warnings) {
   const ParameterSet& set = scene.parameters();
@@ -263,6 +278,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const Prepared& p) {
         "The run ends at {:.4g} ps, before all drives have done what they do, at {:.4g} ps.", p.duration, last));
   warn_of_second_neighbours(scene, p.spacing, warnings);
   warn_of_paper(scene, law, warnings);
+  warn_of_straight_start(scene, warnings);
   for (const ParameterSet& set : scene.sets) warn_of_long_elements(set, scene.element_length, warnings);
   return warnings;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/parameters_toml.hpp"
 #include "model/counter_random.hpp"
 #include "model/error.hpp"
 #include "observe/centre_line.hpp"
@@ -182,6 +183,32 @@ void wind(const Scene& scene, State& state) {
   state = wound(state, scene.start.turn);
 }
 
+// Filaments that the program places itself are twisted along as they are at rest. A natural curvature starts straight.
+void twist_along(const Scene& scene, const Topology& topology, State& state) {
+  if (scene.from_file()) return;
+  for (int t = 0; t < topology.tubes(); ++t) {
+    const TubeType& type = topology.type_of(t);
+    if (type.bond.natural.z == 0) continue;
+    const int first = topology.tube_begin[t];
+    for (int e = first; e < topology.tube_begin[t + 1]; ++e) {
+      const double angle = (e - first) * type.element_length * type.bond.natural.z;
+      const auto i = static_cast<std::size_t>(e);
+      state.orientation.set(i, state.orientation[i] * Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitZ())));
+    }
+  }
+}
+
+void refuse_natural_shape(const Scene& scene) {
+  for (const ParameterSet& set : scene.sets) {
+    if (const std::string turned = too_turned(set.bond, scene.element_length); !turned.empty())
+      throw InputError(place_in(scene, "element_length_nm"), turned, longest_for(set.bond));
+    if (scene.has_ends(Drive::Ends::endless) && vector(set.bond.natural).norm() > 0)
+      throw InputError(place_in(scene, "periodic"),
+                       fmt::format("needs tubes that are straight at rest, and {} has a natural shape", set.name),
+                       "take a rope with ends, or leave the natural shape out of the set");
+  }
+}
+
 // Refuses state files that lack what the rest of the scene needs.
 void check_state(const Scene& scene, const BuiltScene& built) {
   if (scene.start.temperature > 0 && built.state.size() < 2)
@@ -208,6 +235,7 @@ void set_period_inertia(double reach, Topology& topology) {
 
 BuiltScene build(Scene& scene) {
   BuiltScene out;
+  refuse_natural_shape(scene);
   out.topology = empty_topology(scene);
   out.law = contact_law(scene);
   out.spacing =
@@ -231,6 +259,7 @@ BuiltScene build(Scene& scene) {
   set_tube_types(scene, out.topology);
   set_period_inertia(interaction_of(scene, out.law).cutoff(), out.topology);
   draw_strands_together(scene, out.law.get(), out.spacing, out.topology, out.state);
+  twist_along(scene, out.topology, out.state);
   wind(scene, out.state);
   add_wave(scene, out.topology, out.state);
   out.topology.groups.ends_meet = ends_meet(scene, out.topology);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "cli/support.hpp"
 
@@ -71,6 +72,52 @@ TEST_F(Filament, CasesAgainstAtomsAreNotForIt) {
   EXPECT_EQ(o.code, 0) << o.out << o.err;
   EXPECT_THAT(slurp(dir / "v/tube-bend.json"), HasSubstr("a filament has no lattice"));
   EXPECT_THAT(slurp(dir / "v/ring-energy.json"), HasSubstr("f-actin"));
+}
+
+// A set with a shape of its own: a scene starts twisted along and says what its curvature costs, comes to rest without
+// energy, and what needs straight filaments says so.
+TEST_F(Filament, AShapeOfItsOwn) {
+  std::string set = slurp(fs::path(ROPEWALK_SOURCE_DIR) / "data/parameters/f-actin.toml");
+  const auto number = [](const char* key, double value, const char* unit) {
+    return fmt::format("{} = {{ value = {}, unit = \"{}\", standard_error = {}, origin = \"chosen\" }}\n", key, value, unit,
+                       value / 10);
+  };
+  const auto with = [&](const std::string& file, double curvature) {
+    std::string text = set;
+    text.insert(text.find("[filament]\n") + 11,
+                number("curvature_2", curvature, "1/nm") + number("twist_per_length", 0.03, "rad/nm"));
+    const std::size_t EI = text.find("\nEI ") + 1;
+    text.replace(EI, text.find('\n', EI) + 1 - EI, number("EI_1", 110, "nN nm^2") + number("EI_2", 55, "nN nm^2"));
+    spit(dir / file, text);
+  };
+  with("curved.toml", 0.02);
+  with("twisted.toml", 0);
+  const auto lone = [&](const std::string& file, const std::string& parameters, const std::string& run) {
+    spit(dir / file, fmt::format("format = \"ropewalk-scene-1\"\nparameters = \"{}\"\n[chain]\nelements = 25\n[run]\n{}\n",
+                                 parameters, run));
+  };
+  lone("twisted-chain.toml", "twisted.toml", "duration_ps = 10");
+  Outcome o = run("check twisted-chain.toml");
+  ASSERT_EQ(o.code, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("EI 110 and 55 nN nm^2"));
+  EXPECT_THAT(o.out, HasSubstr("a twist of 1.719 deg/nm"));
+  EXPECT_THAT(o.out, Not(HasSubstr("natural curvature")));
+  lone("curved-chain.toml", "curved.toml", "mode = \"relax\"");
+  o = run("check curved-chain.toml");
+  EXPECT_THAT(o.out + o.err, HasSubstr("natural curvature of 0.02/nm and starts straight"));
+  ASSERT_EQ(run("run curved-chain.toml --out rest --quiet").code, 0) << slurp(dir / "stderr.txt");
+  const Outcome energy = run("energy rest/final.csv --parameters curved.toml --json");
+  ASSERT_EQ(energy.code, 0) << energy.err;
+  const auto j = nlohmann::json::parse(energy.out);
+  EXPECT_LT(j.at("energy_eV").at("bend").get<double>(), 1e-3);
+  o = run("validate run euler-buckling natural-helix --parameters curved.toml --out v --quiet");
+  EXPECT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_THAT(slurp(dir / "v/euler-buckling.json"), HasSubstr("straight at rest"));
+  scene("slice.toml", "\"curved.toml\"", "[periodic]\ntwist_deg_per_nm = [[0, 0], [10, 1]]");
+  refuses("check slice.toml", "periodic: needs tubes that are straight at rest");
+  spit(dir / "long.toml", "format = \"ropewalk-scene-1\"\nparameters = \"curved.toml\"\nelement_length_nm = 50\n[chain]\n"
+                          "elements = 9\n[run]\nduration_ps = 1\n");
+  refuses("check long.toml", "take at most 43.566 nm");
 }
 
 // What theory says of a beam and of a zipper holds for both, whose stiffnesses and wells are 20 to 30 times apart.

@@ -1,5 +1,7 @@
 // The same state in LAMMPS and here: forces, energies, virial, and a stretch of dynamics, on 1, 2 and 4 ranks. The
 // engine inside the ranks is held to the simulator's, the plain styles to the reference.
+#include <fmt/format.h>
+
 #include "lammps/states.hpp"
 #include "sim/contact/contact_law.hpp"
 #include "sim/dynamics/loads.hpp"
@@ -156,6 +158,39 @@ TEST_F(FiveStatesTest, ForcesEnergiesAndVirialAgree) {
         for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(found[k], virial[k], (plain ? 1e-12 : 1e-10) * scale) << k;
       }
     }
+  }
+}
+
+// A filament with a natural shape and two stiffnesses of bending, by the engine of the ranks and by the plain styles.
+TEST_F(FiveStatesTest, AFilamentOfANaturalShapeAgrees) {
+  std::string set = slurp(ROPEWALK_SOURCE_DIR "/data/parameters/cellulose-36.toml");
+  const auto number = [](const char* key, double value, const char* unit) {
+    return fmt::format("{} = {{ value = {}, unit = \"{}\", standard_error = 0, origin = \"chosen\" }}\n", key, value, unit);
+  };
+  set.insert(set.find("[filament]\n") + 11, number("curvature_1", 0.01, "1/nm") + number("curvature_2", -0.02, "1/nm") +
+                                                number("twist_per_length", 0.1, "rad/nm"));
+  const std::size_t EI = set.find("\nEI ") + 1;
+  set.replace(EI, set.find('\n', EI) + 1 - EI, number("EI_1", 2e3, "nN nm^2") + number("EI_2", 1e3, "nN nm^2"));
+  spit(dir / "shaped.toml", set);
+  constexpr double length = 3.8;
+  const FiveStates state{
+      "shaped",
+      "parameters = \"shaped.toml\"\nelement_length_nm = 3.8\n[contact]\nlaw = \"line\"\nprecision = \"double\"\n",
+      {straight({0, 0, 0}, ez, 12, length), straight({4, 0, 1}, ez, 12, length), straight({0, 4, 2}, ez, 12, length)}};
+  const Case c = exported_case(state, driven_scene(state));
+  edit(state.name, "fix motion all mdem/nve\n", "fix motion all mdem/nve\nreset_timestep 1\n");
+  edit(state.name, "run ${last} upto\n", "run 0\n");
+  Prepared prepared = c.prepared;
+  prepared.state = start(c.scene, prepared).state();
+  for (const char* forces : {"engine", "plain"}) {
+    const std::string folder = copied(state.name, std::string("shaped-") + forces);
+    const Outcome o = lmp_each(2, {{folder, {"steps 0", std::string("forces ") + forces}}});
+    ASSERT_EQ(o.code, 0) << o.out << o.err;
+    const Forces expected = forces_here(prepared, prepared.time_step, std::string(forces) == "plain");
+    ASSERT_GT(expected.energy.bend, 1);
+    const Left left = left_by(dir / folder, prepared.topology);
+    EXPECT_LT(relative_difference(expected.force, left.force), force_tolerance) << forces;
+    EXPECT_LT(relative_difference(expected.torque, left.torque), force_tolerance) << forces;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -136,6 +137,57 @@ TEST(Statics, TubeBetweenCouplesTwistsAsItsBonds) {
   for (int e = 0; e < b.last; ++e)
     EXPECT_NEAR(bond_twist_angle(frame_of(s.state().orientation[e]), frame_of(s.state().orientation[e + 1])), each,
                 1e-7);
+}
+
+// From straight to the helix of its natural curvature and twist.
+TEST(Statics, AFilamentFindsItsNaturalHelix) {
+  Beam b(31);
+  b.topology.types[0].bond = test::shaped_bond();
+  Simulation s = b.make();
+  ASSERT_GT(s.forces().energy.bonds(), 100);
+  ASSERT_TRUE(rest(s).relaxed.at_rest);
+  EXPECT_LT(s.forces().energy.bonds(), 1e-8);
+  for (int e = 0; e < b.last; ++e) {
+    const Quaternion turn = s.state().orientation[e].conjugate() * s.state().orientation[e + 1];
+    EXPECT_LT(turn.angularDistance(natural_turn(b.bond(), element_length)), 1e-5) << e;
+  }
+}
+
+// No wave of a filament at its natural shape is faster than the time step allows, and the step is not much shorter.
+TEST(Statics, TheTimeStepKnowsTheNaturalShape) {
+  const forms::Vec shapes[] = {{0, 0, 0}, {0.15, -0.1, 0.3}, {0.6, 0, 0.5}, {0.8, 0.7, 0}, {0, 0, 1.1}};
+  for (const forms::Vec& shape : shapes)
+    for (const double difference : {0.0, 0.6}) {
+      Beam b(24);
+      BondStiffness& k = b.topology.types[0].bond;
+      k.natural = shape;
+      k.bend_difference = difference * k.bend;
+      for (int i = 1; i <= b.last; ++i) {
+        const Quaternion before = b.state.orientation[i - 1];
+        b.state.position.set(i, b.state.position[i - 1] +
+                                    element_length * (before * natural_turn(k, 0.5 * element_length) * Vector3::UnitZ()));
+        b.state.orientation.set(i, before * natural_turn(k, element_length));
+      }
+      const Simulation s = b.make();
+      ASSERT_LT(s.forces().energy.bonds(), 1e-10);
+      const Tangent t = tangent_of(s);
+      const Eigen::VectorXd per_mass = t.mass.cwiseSqrt().cwiseInverse();
+      const Eigen::MatrixXd m = per_mass.asDiagonal() * Eigen::MatrixXd(t.stiffness) * per_mass.asDiagonal();
+      const double fastest = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (m + m.transpose())).eigenvalues().maxCoeff());
+      const double allowed = 2 / time_step_limit(b.topology, {}, 0).limit;
+      EXPECT_LT(fastest, 1.0001 * allowed) << shape.x << " " << difference;
+      EXPECT_GT(fastest, 0.9 * allowed) << shape.x << " " << difference;
+      RecordProperty("margin", std::to_string(allowed / fastest));
+    }
+}
+
+// The tangent of bonds of a natural shape, bent, against differences of their forces.
+TEST(Statics, TangentOfShapedBondsIsThatOfDifferences) {
+  Topology topology = test::published_topology();
+  topology.types[0].bond = test::shaped_bond();
+  const State state = test::disordered_bundle(topology, 2, 9, 1.75, 0.1, 4);
+  const Simulation s(topology, {}, {}, state, 0.002);
+  EXPECT_LT(tangent_by_blocks(s).error, 1e-6);
 }
 
 TEST(Statics, AFreeTubeWithoutForcesIsAtRest) {

@@ -11,13 +11,14 @@
 #include "sim/contact/shared/neighbour_spans.hpp"
 #include "sim/dynamics/simulation.hpp"
 #include "sim/state/part_of_scene.hpp"
+#include "sim/threads/vector_unit.hpp"
 #include "unit/support.hpp"
 
 namespace ropewalk {
 namespace {
 namespace UNIT {
 
-enum class Kind { paper, line, mixed };
+enum class Kind { paper, line, mixed, shaped };
 
 struct Variant {
   std::string name;
@@ -50,7 +51,8 @@ class ForcesTest : public ::testing::TestWithParam<Variant> {
       in.law = paper_law(contact, v.legacy);
     } else {
       std::vector<LineContact> pairs = {test::line_contact(0.6785, v.nodes, 0.6785, v.nodes)};
-      if (v.kind == Kind::mixed) pairs = mix_tube_types();
+      if (v.kind == Kind::mixed || v.kind == Kind::shaped) pairs = mix_tube_types();
+      if (v.kind == Kind::shaped) topology.types[0].bond = test::shaped_bond();
       if (v.cutoff > 0)
         for (LineContact& pair : pairs) pair.density = with_cutoff(pair.density, v.cutoff);
       in.law = line_law(pairs);
@@ -117,6 +119,28 @@ TEST_P(ForcesTest, FastEqualsReference) {
   EXPECT_GT(std::fabs(reference.energy.vdw), 50);  // the scene does have contacts
   expect_equal(fast(0.0, 1), reference, tolerance());
   expect_equal(fast(0.4, 2), reference, tolerance());
+}
+
+// Bonds of a natural shape, by the loops of every vector unit that this processor has.
+TEST(ShapedForces, EqualReferenceByEveryVectorUnit) {
+  Topology topology = test::published_topology();
+  topology.types[0].bond = test::shaped_bond();
+  const State state = test::disordered_bundle(topology, 3, 41, 1.75, 0.2, 5);
+  const Interaction in;
+  Forces reference(state.size());
+  compute_reference(topology, in, state, reference);
+  EXPECT_GT(reference.energy.bend, 10);
+  const VectorUnit own = vector_unit_in_use();
+  NeighbourList list(in, 0);
+  list.build(topology, state);
+  for (const VectorUnit unit : {VectorUnit::base, VectorUnit::v3, VectorUnit::v4}) {
+    if (unit > own) continue;
+    use_vector_unit(unit);
+    Forces f(state.size());
+    ForceEngine().compute(topology, in, list, state, f);
+    expect_equal(f, reference, 1e-12);
+  }
+  use_vector_unit(own);
 }
 
 // The forces as several processes compute them: `owner` of each element; copies are all elements within reach of
@@ -343,6 +367,7 @@ const std::vector<Variant> line_variants = {
     with_nodes("LineSingleSixNodes", 6, Interaction::Precision::mixed),
     with_nodes("LineSingleManyNodes", 21, Interaction::Precision::mixed),
     Variant{"LineTypes", Kind::mixed, false, false, 0, 0, 0.1},
+    Variant{"LineShaped", Kind::shaped, false, false, 20, 1, 0.1},
     Variant{"LineSingle", Kind::line, false, false, 0, 0, 0.05, Interaction::Precision::mixed},
     Variant{"LineSingleOrdered", Kind::line, false, false, 0, 0, 1e-3, Interaction::Precision::mixed},
     Variant{"LineSingleOverlapping", Kind::line, false, false, 0, 0, 0.5, Interaction::Precision::mixed},

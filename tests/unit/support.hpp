@@ -70,6 +70,14 @@ inline BondStiffness pulled_bond() {
   return k;
 }
 
+// With a natural shape and two stiffnesses of bending.
+inline BondStiffness shaped_bond() {
+  BondStiffness k{1470.0 * units::nN_nm, 358.4 * units::nN_nm, 319.5 * units::nN_nm, 1715};
+  k.bend_difference = 0.4 * k.bend;
+  k.natural = {0.15, -0.1, 0.3};
+  return k;
+}
+
 inline Topology published_topology() {
   Topology t;
   const double mass = 220 * units::carbon_mass, radius = 0.678;

@@ -82,8 +82,8 @@ double mean_bending_moment(const Specimen& s, const State& state) {
     for (int i = s.topology.tube_begin[t]; i + 1 < s.topology.tube_begin[t + 1]; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (grips.count(i) && grips.count(i + 1) && s.twist_share[at] == s.twist_share[at + 1]) continue;
-      sum += bending_moment(type.bond, type.element_length, axis_of(state.orientation[at]),
-                            axis_of(state.orientation[at + 1]));
+      sum += bending_moment(type.bond, type.element_length, frame_of(state.orientation[at]),
+                            frame_of(state.orientation[at + 1]));
       ++count;
     }
   }

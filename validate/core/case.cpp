@@ -69,7 +69,7 @@ bool CaseResult::holds() const {
 
 std::string Fault::name() const {
   std::string text = change_name("EA", EA) + change_name("EI", EI) + change_name("GJ", GJ) +
-                     change_name("contact", contact) + (missing_torque ? "missing_torque_" : "");
+                     change_name("contact", contact) + change_name("natural_shape", natural) + (missing_torque ? "missing_torque_" : "");
   if (!text.empty()) text.pop_back();
   return text;
 }
@@ -79,6 +79,7 @@ Fault wrong_EI(double factor) { return {1, factor, 1, 1, false}; }
 Fault wrong_GJ(double factor) { return {1, 1, factor, 1, false}; }
 Fault wrong_stiffnesses(double factor) { return {factor, factor, factor, 1, false}; }
 Fault wrong_contact(double factor) { return {1, 1, 1, factor, false}; }
+Fault wrong_natural_shape(double factor) { return {1, 1, 1, 1, false, factor}; }
 Fault without_torque() { return {1, 1, 1, 1, true}; }
 
 void scale_contact(ParameterSet& set, double factor) {
@@ -93,6 +94,8 @@ ParameterSet CaseContext::model(std::size_t k) const {
   ParameterSet set = sets.at(k);
   set.bond.stretch *= fault.EA;
   set.bond.bend *= fault.EI;
+  set.bond.bend_difference *= fault.EI;
+  for (double* part : {&set.bond.natural.x, &set.bond.natural.y, &set.bond.natural.z}) *part *= fault.natural;
   set.bond.twist *= fault.GJ;
   scale_contact(set, fault.contact);
   return set;
@@ -137,6 +140,8 @@ bool like(const ParameterSet& i, const ParameterSet& j) {
 void check_applicable(const Case& c, const ParameterSet& given, const std::vector<ParameterSet>& shipped) {
   if (given.filament && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
+  if (is_shaped(given.bond) && !c.shaped)
+    throw NotApplicable("the case is of a filament that is straight at rest and bends alike in all directions");
   if (!given.walls.empty() && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("the atoms of this case are those of a tube of one wall");
   if (c.law == Case::Law::line && !given.law<LineParameters>())

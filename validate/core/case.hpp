@@ -85,6 +85,7 @@ struct Fault {
   double EA = 1, EI = 1, GJ = 1;  // factors of the bond's stiffnesses
   double contact = 1;             // factor of the contact energy
   bool missing_torque = false;    // the `paper` law without the torque that the published code leaves out
+  double natural = 1;             // factor of curvature and twist at rest
 
   std::string name() const;  // "EI_plus_10_percent", for names of tests; empty without a fault
 };
@@ -93,6 +94,7 @@ Fault wrong_EI(double factor);
 Fault wrong_GJ(double factor);
 Fault wrong_stiffnesses(double factor);  // EA, EI and GJ together
 Fault wrong_contact(double factor);
+Fault wrong_natural_shape(double factor);
 Fault without_torque();
 
 // Multiplies the contact energy of a set; the distance of its minimum stays.
@@ -160,6 +162,8 @@ struct Case {
   Law law = Law::line;
   // Shipped sets that it runs with where none is given.
   std::vector<std::string> sets = {"cnt-10-10-tersoff"};
+  // Is of a filament with a natural shape or two stiffnesses of bending too.
+  bool shaped = false;
   // Compares pairs of unlike tubes too: takes the second set of `validate run --with`.
   bool takes_two = false;
   // The case is about these sets. A given one takes the place of none of them, unless it is of the same tube and

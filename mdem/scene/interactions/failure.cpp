@@ -180,15 +180,19 @@ class TubeFailure : public ForceTerm {
     return element + 1 == scene_.tube_begin[static_cast<std::size_t>(scene_.tube_of(element)) + 1];
   }
   // A bond slips a hair before BondSum::slipping, so that no run ends for a bond that breaks.
-  static bool slips(const Quaternion& from, const Quaternion& to) {
-    const Quaternion turn = from.conjugate() * to;
+  static bool slips(const TubeType& type, const Quaternion& from, const Quaternion& to) {
+    Quaternion turn = from.conjugate() * to;
+    if (is_shaped(type.bond)) {
+      const Quaternion back = natural_turn(type.bond, -0.5 * type.element_length);
+      turn = back * turn * back;
+    }
     return turn.z() * turn.z() >= (1 - 1e-9) * turn.w() * turn.w();
   }
   bool breaks(int tube, const State& state, int element) const {
     const auto i = static_cast<std::size_t>(element);
     if (broken_[i] || limit_[i] == no_bond) return false;
-    if (slips(state.orientation[i], state.orientation[i + 1])) return true;
     const TubeType& type = here_.type_of(tube);
+    if (slips(type, state.orientation[i], state.orientation[i + 1])) return true;
     const auto [first, last] = about(tube, element);
     const int bonds = last - first + 1;
     const double length = bonds * type.element_length;
@@ -199,8 +203,8 @@ class TubeFailure : public ForceTerm {
     }
     return arc > length * (1 + limit_[i]) ||
            (law_.moment < never_breaks &&
-            bending_moment(type.bond, length, axis_of(state.orientation[static_cast<std::size_t>(first)]),
-                           axis_of(state.orientation[static_cast<std::size_t>(last + 1)])) > law_.moment);
+            bending_moment(type.bond, length, frame_of(state.orientation[static_cast<std::size_t>(first)]),
+                           frame_of(state.orientation[static_cast<std::size_t>(last + 1)])) > law_.moment);
   }
   // The bonds about this one, by the elements before them, which are together about as long as the tube is wide.
   // None of them is broken.

@@ -106,7 +106,8 @@ DeviceStepper::DeviceStepper(const Topology& topology, const Interaction& intera
   device_->write(contact_torque_, nothing.data(), quad);
   std::vector<ElementType> types;
   for (const TubeType& t : topology.types)
-    types.push_back({t.mass, t.inertia, t.element_length, shear_share(t.bond, t.element_length), t.bond});
+    types.push_back({t.mass, t.inertia, t.element_length, shear_share(t.bond, t.element_length), t.bond,
+                     bond_shape(t.bond, t.element_length)});
   types_ = send(types);
   for (buckets_ = 64; buckets_ < elements_ / 2; buckets_ *= 2) {
   }

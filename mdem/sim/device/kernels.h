@@ -354,11 +354,18 @@ KERNEL bonds(OF_GROUP GLOBAL const double* motion, GLOBAL const int* kind, GLOBA
       if (kind[i] & KIND_BONDED) {
         const int j = i + 1;
         GLOBAL const ElementType* type = &types[kind[i] & KIND_TYPE];
-        const BodyFrame fi = frame_at(motion, stride, i), fj = frame_at(motion, stride, j);
+        BodyFrame fi = frame_at(motion, stride, i), fj = frame_at(motion, stride, j);
+        if (type->shape.used) {
+          const BodyFrame turn = type->shape.turn;
+          fi = frame_turned(fi, turn);
+          fj = frame_turned_back(fj, turn);
+        }
         const Vec separation = vec_difference(vec_at(motion, 0, stride, j), vec_at(motion, 0, stride, i));
         const double sine = twist_sine(fi, fj), cosine = twist_cosine(fi, fj);
         f = type->bond.anharmonic.used ? anharmonic_bond(&type->bond, type->shear_share, type->length, separation, fi, fj,
                                                          angle_of(sine, cosine))
+            : type->shape.used         ? shaped_bond(&type->bond, type->shape.share, type->shape.shear_difference,
+                                                     type->length, separation, fi, fj)
                                        : harmonic_bond(&type->bond, type->shear_share, type->length, separation, fi, fj);
         slips = cosine <= 0 ? 1 : 0;
         if (rate > 0) {

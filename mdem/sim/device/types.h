@@ -19,10 +19,11 @@ enum { TOLD_SPEED2, TOLD_SPIN2, TOLD_MOVED, TOLD_TURN, TOLD_TURN_Z, TOLD_POWER, 
 enum { SUM_SPEEDS = TOLD, SUM_MOVED, SUMMARY };
 #define NO_ELEMENT 2147483647
 
-// The members have the names and units of TubeType; shear_share: of bonds of this length.
+// The members have the names and units of TubeType; shear_share and shape: of bonds of this length.
 typedef struct {
   double mass, inertia, length, shear_share;
   BondStiffness bond;
+  BondShape shape;
 } ElementType;
 
 // Places of the nodes on an element of one type of tube, from its centre, in units of LineTables::unit.

@@ -10,6 +10,7 @@
 #include "model/contract.hpp"
 #include "sim/contact/contact_law.hpp"
 #include "sim/forces/force_term.hpp"
+#include "sim/forces/pair_stiffness.hpp"
 
 namespace ropewalk {
 namespace {
@@ -196,11 +197,51 @@ double stable_step(const std::vector<Wave>& waves, double before) {
   return limit;
 }
 
+// The largest angular frequency (1/ps) of an endless chain at its natural shape, a helix: in the body frames of its
+// elements all bonds are alike.
+double natural_chain_frequency(const TubeType& type) {
+  const auto forces = [&type](const Pose& i, const Pose& j) {
+    const BondForce f = bond_energy_and_gradient(type.bond, type.element_length, j.position - i.position,
+                                                 frame_of(i.orientation), frame_of(j.orientation));
+    return PairVector((PairVector() << -f.force_j, f.torque_i, f.force_j, f.torque_j).finished());
+  };
+  const double a = type.element_length;
+  const Pose here{Vector3::Zero(), Quaternion::Identity()},
+      next{a * (natural_turn(type.bond, 0.5 * a) * Vector3::UnitZ()), natural_turn(type.bond, a)};
+  PairMatrix to_body = PairMatrix::Identity();
+  for (const int at : {6, 9}) to_body.block<3, 3>(at, at) = next.orientation.toRotationMatrix();
+  PairMatrix k = to_body.transpose() * pair_stiffness(forces, here, next) * to_body;
+  PairVector per_mass;
+  per_mass << Vector3::Constant(1 / std::sqrt(type.mass)), Vector3::Constant(1 / std::sqrt(type.inertia)),
+      Vector3::Constant(1 / std::sqrt(type.mass)), Vector3::Constant(1 / std::sqrt(type.inertia));
+  k = per_mass.asDiagonal() * k * per_mass.asDiagonal();
+  double largest = 0;
+  constexpr int steps = 64;
+  for (int n = 0; n <= steps; ++n) {
+    const std::complex<double> phase = std::polar(1.0, units::pi * n / steps);
+    const Matrix6 across = phase * k.topRightCorner<6, 6>();
+    largest = std::max(largest, largest_eigenvalue(k.topLeftCorner<6, 6>() + k.bottomRightCorner<6, 6>() + across +
+                                                   across.adjoint()));
+  }
+  return std::sqrt(largest);
+}
+
+// A straight bond that is alike in all directions, and whose chain is as stiff as any of a natural shape.
+BondStiffness stiffest_straight(const TubeType& type) {
+  BondStiffness k = straightened(stiffest_in_window(type.bond));
+  if (!is_shaped(type.bond)) return k;
+  k.bend += std::fabs(type.bond.bend_difference);
+  const double straight = stiffest_chain_frequency(k, type.element_length, type.mass, type.inertia),
+               more = std::max(1.0, std::pow(natural_chain_frequency(type) / straight, 2));
+  for (double* stiffness : {&k.stretch, &k.bend, &k.twist, &k.shear}) *stiffness *= more;
+  return k;
+}
+
 }  // namespace
 
 TimeStepLimit time_step_limit(const Topology& given, const Interaction& in, double spacing) {
   Topology topology = given;
-  for (TubeType& t : topology.types) t.bond = stiffest_in_window(t.bond);
+  for (TubeType& t : topology.types) t.bond = stiffest_straight(t);
   TimeStepLimit out;
   const auto raise = [](double& value, double to) { value = std::max(value, to); };
   for (const TubeType& t : topology.types) {

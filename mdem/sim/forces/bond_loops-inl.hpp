@@ -43,7 +43,7 @@ __attribute__((always_inline)) inline BondEnergy bond_forces(const TubeType& typ
     const forms::BodyFrame fi{{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}};
     const forms::BodyFrame fj{{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}};
     const forms::Vec separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
-    const double share = shear_share(k, a);
+    const double share = even_shear_share(k, a);
     const forms::BondAction f = anharmonic
                                     ? forms::window_bond(&k, share, a, separation, fi, fj, bond_twist_angle(fi, fj))
                                     : forms::harmonic_bond(&k, share, a, separation, fi, fj);
@@ -70,6 +70,44 @@ __attribute__((flatten)) BondEnergy anharmonic_forces(const TubeType& type, cons
                                                       const FrameArray& frames, const BondRange& bonds,
                                                       BondArray& out, double& slips) {
   return bond_forces<true>(type, position, frames, bonds, out, slips);
+}
+
+// Bonds with a natural shape or two stiffnesses of bending, else as harmonic_forces().
+__attribute__((flatten)) BondEnergy shaped_forces(const TubeType& type, const Vec3Array& position,
+                                                  const FrameArray& frames, const BondRange& bonds, BondArray& out,
+                                                  double& slips) {
+  const std::ptrdiff_t begin = bonds.begin, from = bonds.from, to = bonds.to;
+  const double *x = position.x.data() + begin, *y = position.y.data() + begin, *z = position.z.data() + begin;
+  const Vec3Array &e1 = frames.e1, &e2 = frames.e2, &t = frames.t;
+  const double *ax = e1.x.data(), *ay = e1.y.data(), *az = e1.z.data(), *bx = e2.x.data(), *by = e2.y.data(),
+               *bz = e2.z.data(), *tx = t.x.data(), *ty = t.y.data(), *tz = t.z.data();
+  double *fx = out.force_j.x.data(), *fy = out.force_j.y.data(), *fz = out.force_j.z.data();
+  double *ix = out.torque_i.x.data(), *iy = out.torque_i.y.data(), *iz = out.torque_i.z.data();
+  double *jx = out.torque_j.x.data(), *jy = out.torque_j.y.data(), *jz = out.torque_j.z.data();
+  const BondStiffness k = type.bond;
+  const double a = type.element_length;
+  const BondShape shape = bond_shape(k, a);
+  double stretch = 0, shear = 0, bend = 0, twist = 0, smallest = 1;
+#pragma GCC ivdep
+  for (std::ptrdiff_t i = from; i < to; ++i) {
+    const std::ptrdiff_t j = i + 1;
+    const forms::BodyFrame fi = forms::frame_turned(
+        {{ax[i], ay[i], az[i]}, {bx[i], by[i], bz[i]}, {tx[i], ty[i], tz[i]}}, shape.turn);
+    const forms::BodyFrame fj = forms::frame_turned_back(
+        {{ax[j], ay[j], az[j]}, {bx[j], by[j], bz[j]}, {tx[j], ty[j], tz[j]}}, shape.turn);
+    const forms::Vec separation{x[j] - x[i], y[j] - y[i], z[j] - z[i]};
+    const forms::BondAction f = forms::shaped_bond(&k, shape.share, shape.shear_difference, a, separation, fi, fj);
+    fx[i] = f.force_j.x, fy[i] = f.force_j.y, fz[i] = f.force_j.z;
+    ix[i] = f.torque_i.x, iy[i] = f.torque_i.y, iz[i] = f.torque_i.z;
+    jx[i] = f.torque_j.x, jy[i] = f.torque_j.y, jz[i] = f.torque_j.z;
+    stretch += f.energy.stretch;
+    shear += f.energy.shear;
+    bend += f.energy.bend;
+    twist += f.energy.twist;
+    smallest = std::min(smallest, forms::twist_cosine(fi, fj));
+  }
+  slips = smallest;
+  return {stretch, shear, bend, twist};
 }
 
 // A loop of its own, so that bonds within the window have the bits of the loop above.

@@ -27,14 +27,17 @@ BondSum whole_bonds(const BondInput& in, int tube, const BondRange& range, TubeB
   const TubeType& type = in.topology.type_of(tube);
   BondSum sum;
   double slips = 1;
-  const auto forces =
-      type.bond.anharmonic.used ? ROPEWALK_IN_USE(anharmonic_forces) : ROPEWALK_IN_USE(harmonic_forces);
+  ROPEWALK_EXPECTS(!type.bond.anharmonic.used || !is_shaped(type.bond));
+  const auto forces = type.bond.anharmonic.used ? ROPEWALK_IN_USE(anharmonic_forces)
+                      : is_shaped(type.bond)    ? ROPEWALK_IN_USE(shaped_forces)
+                                                : ROPEWALK_IN_USE(harmonic_forces);
   sum.energy = forces(type, in.state.position, work.frames, range, work.bonds, slips);
   if (type.bond.anharmonic.used && ROPEWALK_IN_USE(largest_strain)(type, in.state.position, work.frames, range) >
                                        type.bond.anharmonic.max_strain)
     sum.energy.stretch += ROPEWALK_IN_USE(add_beyond)(type, in.state.position, work.frames, range, work.bonds);
   for (std::ptrdiff_t i = range.from; !(slips > 0) && i < range.to && sum.slipping < 0; ++i) {
-    const Frame fi = work.frames[static_cast<std::size_t>(i)], fj = work.frames[static_cast<std::size_t>(i + 1)];
+    const auto [fi, fj] = bond_ends(type.bond, type.element_length, work.frames[static_cast<std::size_t>(i)],
+                                    work.frames[static_cast<std::size_t>(i + 1)]);
     if (!(fi.e1.dot(fj.e1) + fi.e2.dot(fj.e2) > 0)) sum.slipping = static_cast<int>(range.begin + i);
   }
   if (in.damping.rate > 0) sum.power = ROPEWALK_IN_USE(bond_damping)(type, in.damping, in.state, range, work.bonds);

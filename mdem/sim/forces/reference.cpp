@@ -37,7 +37,7 @@ void bond(const TubeType& type, const Interaction& in, const State& s, std::size
   out.force.add(j, f.force_j);
   out.torque.add(i, f.torque_i);
   out.torque.add(j, f.torque_j);
-  if (std::fabs(bond_twist_angle(fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
+  if (std::fabs(bond_twist_angle(type.bond, type.element_length, fi, fj)) >= 0.5 * units::pi && out.slipping_bond < 0)
     out.slipping_bond = static_cast<int>(i);
   if (in.damping.bond.rate > 0)
     add_pair(in.damping.bond.force(type.mass, type.inertia, separation, s.velocity[i], s.angular_velocity[i],

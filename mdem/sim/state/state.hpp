@@ -220,6 +220,13 @@ inline Frame frame_of(const Quaternion& q) {
   return {vector(f.e1), vector(f.e2), vector(f.t)};
 }
 
+// The rotation of a natural shape over this arc (nm), in the body frame.
+inline Quaternion natural_turn(const BondStiffness& k, double arc) {
+  const Vector3 turn = arc * vector(k.natural);
+  const double angle = turn.norm();
+  return angle > 0 ? Quaternion(Eigen::AngleAxisd(angle, turn / angle)) : Quaternion::Identity();
+}
+
 // The tube axis alone.
 inline Vector3 axis_of(const Quaternion& q) { return vector(forms::turn_axis(plain(q))); }
 

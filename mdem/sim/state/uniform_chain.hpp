@@ -8,7 +8,7 @@
 namespace ropewalk {
 
 // Per length (eV/nm) of a chain of equal bonds; `element` is their length (nm). Strain of the chord, twist (rad/nm)
-// against the natural one, curvature (1/nm).
+// and curvature (1/nm) against the natural ones; EI is the mean of two.
 inline double chain_energy(const BondStiffness& bond, double element, double strain, double twist,
                            double curvature) {
   const Frame i = frame_of(Quaternion::Identity());
@@ -16,7 +16,7 @@ inline double chain_energy(const BondStiffness& bond, double element, double str
   const Quaternion bent(Eigen::AngleAxisd(turn, Vector3::UnitY()));
   const Frame j = frame_of(bent * Quaternion(Eigen::AngleAxisd(twist * element, Vector3::UnitZ())));
   const Vector3 chord(std::sin(0.5 * turn), 0, std::cos(0.5 * turn));
-  return bond_energy(bond, element, element * (1 + strain) * chord, i, j).total() / element;
+  return bond_energy(straightened(bond), element, element * (1 + strain) * chord, i, j).total() / element;
 }
 
 }  // namespace ropewalk

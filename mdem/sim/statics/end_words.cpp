@@ -20,7 +20,8 @@ std::string overloaded_bond(const Simulation& s) {
     const Anharmonic& h = type.bond.anharmonic;
     for (int e = topology.tube_begin[t]; e + 1 < topology.tube_begin[t + 1]; ++e) {
       const auto i = static_cast<std::size_t>(e);
-      const Frame a = frame_of(s.state().orientation[i]), b = frame_of(s.state().orientation[i + 1]);
+      const auto [a, b] = bond_ends(type.bond, type.element_length, frame_of(s.state().orientation[i]),
+                                    frame_of(s.state().orientation[i + 1]));
       const double twist = std::fabs(bond_twist_angle(a, b)), bend = std::acos(std::min(1.0, a.t.dot(b.t)));
       const double per_length = h.radius / type.element_length;
       const char* what = h.used && per_length * twist >= h.max_shear ? "has collapsed"

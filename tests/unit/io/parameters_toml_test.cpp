@@ -320,14 +320,46 @@ TEST(FilamentSet, RefusesWhatOnlyATubeHas) {
       HasSubstr("endless_collapse: is of the wall"));
 }
 
-TEST(FilamentSet, SaysWhatBondsCannotHave) {
-  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\ntwist_per_length = 0.1\n"),
-              HasSubstr("twist_per_length: is not in the model"));
-  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\ncurvature = 0.1\n"), HasSubstr("curvature: is not in the model"));
-  const std::string unit = ", unit = \"nN nm^2\", standard_error = 0, origin = \"chosen\" }\n";
-  EXPECT_THAT(said_of_filament("[bond]\n", "[bond]\nEI_1 = { value = 2" + unit + "EI_2 = { value = 6" + unit),
-              HasSubstr("= 3 nN nm^2"));
-  EXPECT_THAT(said_of_filament("[bond]\n", "[bond]\nEI_2 = { value = 2" + unit), HasSubstr("EI_2: is one of two"));
+// A line of a number.
+std::string number(const std::string& key, double value, const std::string& unit) {
+  return fmt::format("{} = {{ value = {}, unit = \"{}\", standard_error = 0, origin = \"chosen\" }}\n", key, value, unit);
+}
+
+TEST(FilamentSet, HasANaturalShapeAndTwoStiffnesses) {
+  std::string text = filament_text;
+  const auto put = [&](const std::string& behind, const std::string& lines) {
+    text.insert(text.find(behind) + behind.size(), lines);
+  };
+  put("[filament]\n", number("curvature_1", 0.01, "1/nm") + number("curvature_2", -0.02, "1/nm") +
+                           number("twist_per_length", 0.1, "rad/nm"));
+  const std::size_t EI = text.find("\nEI ") + 1;
+  text.erase(EI, text.find('\n', EI) + 1 - EI);
+  put("[bond]\n", number("EI_1", 2000, "nN nm^2") + number("EI_2", 1000, "nN nm^2"));
+  const ParameterSet set = parameters_of_text(text, "set.toml");
+  EXPECT_DOUBLE_EQ(set.bond.bend, 1500 * units::nN_nm);
+  EXPECT_DOUBLE_EQ(set.bond.bend_difference, 500 * units::nN_nm);
+  EXPECT_EQ(vector(set.bond.natural), Vector3(0.01, -0.02, 0.1));
+  const ParameterSet again = parameters_of_text(parameters_text(set, ""), "again.toml");
+  EXPECT_EQ(vector(again.bond.natural), vector(set.bond.natural));
+  EXPECT_EQ(again.bond.bend_difference, set.bond.bend_difference);
+  EXPECT_FALSE(is_shaped(parameters_of_text(filament_text, "set.toml").bond));
+}
+
+TEST(FilamentSet, SaysWhatShapesItCannotHave) {
+  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\n" + number("curvature", 0.1, "1/nm")),
+              HasSubstr("curvature: has no direction"));
+  EXPECT_THAT(said_of_filament("[filament]\n", "[filament]\n" + number("twist_per_length", 1, "rad/nm")),
+              HasSubstr("the natural shape turns by"));
+  EXPECT_THAT(said_of_filament("[bond]\n", "[bond]\n" + number("EI_1", 2, "nN nm^2")), HasSubstr("EI_1: stands beside EI"));
+  EXPECT_THAT(said_of_filament("\nEI ", "\nEI_2 "), HasSubstr("EI_1: is missing"));
+  std::string tube = tube_text;
+  tube.replace(tube.find("\nEI "), 4, "\nEI_1 ");
+  try {
+    parameters_of_text(tube, "set.toml");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("EI_1: is of a filament"));
+  }
 }
 
 TEST(FilamentSet, WhoseWellIsNotThatOfItsLawIsRefused) {

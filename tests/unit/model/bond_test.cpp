@@ -37,16 +37,18 @@ BondForce force(const BondPose& p, const BondStiffness& k = test::published_bond
   return bond_energy_and_gradient(k, test::element_length, p.separation, frame_of(p.qi), frame_of(p.qj));
 }
 
-enum class Form { published, shearing, anharmonic, pulled };
+enum class Form { published, shearing, anharmonic, pulled, shaped };
 BondStiffness bond_of(Form form) {
   if (form == Form::anharmonic) return test::anharmonic_bond();
   if (form == Form::pulled) return test::pulled_bond();
+  if (form == Form::shaped) return test::shaped_bond();
   return form == Form::shearing ? shearing_bond() : test::published_bond();
 }
 
 class BondForms : public ::testing::TestWithParam<Form> {};
 INSTANTIATE_TEST_SUITE_P(All, BondForms,
-                         ::testing::Values(Form::published, Form::shearing, Form::anharmonic, Form::pulled));
+                         ::testing::Values(Form::published, Form::shearing, Form::anharmonic, Form::pulled,
+                                           Form::shaped));
 
 TEST_P(BondForms, ForceAndTorquesAreTheGradient) {
   const BondStiffness k = bond_of(GetParam());
@@ -95,6 +97,8 @@ TEST_P(BondForms, NetTorqueVanishes) {
 TEST_P(BondForms, FrameRotationAndSwap) {
   const BondStiffness k = bond_of(GetParam());
   const auto energy = [&](const BondPose& p) { return UNIT::energy(p, k); };
+  BondStiffness turned_back = k;
+  turned_back.natural.x *= -1;  // from the other end, a curvature about e1 has the other sign
   Random random(5);
   for (int n = 0; n < 500; ++n) {
     const BondPose p = random_pose(random, 1.0);
@@ -102,7 +106,55 @@ TEST_P(BondForms, FrameRotationAndSwap) {
     EXPECT_NEAR(energy({r * p.separation, r * p.qi, r * p.qj}), energy(p), 1e-9 * (1 + energy(p)));
     // Read from the other end: both frames turned about e1 by 180 degrees.
     const Quaternion back(0, 1, 0, 0);
-    EXPECT_NEAR(energy({-p.separation, p.qj * back, p.qi * back}), energy(p), 1e-9 * (1 + energy(p)));
+    EXPECT_NEAR(UNIT::energy({-p.separation, p.qj * back, p.qi * back}, turned_back), energy(p), 1e-9 * (1 + energy(p)));
+  }
+}
+
+TEST(ShapedBond, RestsAtItsNaturalShape) {
+  const BondStiffness k = test::shaped_bond();
+  const double a = test::element_length;
+  Random random(6);
+  const Quaternion qi = random.orientation(), qj = qi * natural_turn(k, a);
+  const Vector3 separation = a * (qi * natural_turn(k, 0.5 * a) * Vector3::UnitZ());
+  const BondForce f = force({separation, qi, qj}, k);
+  EXPECT_LT(f.energy.total(), 1e-12);
+  EXPECT_LT(f.force_j.norm() + f.torque_i.norm() + f.torque_j.norm(), 1e-11);
+  EXPECT_NEAR(bond_twist_angle(k, a, frame_of(qi), frame_of(qj)), 0, 1e-14);
+  EXPECT_GT(std::fabs(bond_twist_angle(frame_of(qi), frame_of(qj))), 0.3);
+}
+
+// Forces do not depend on the natural shape once the frames are turned by it.
+TEST(ShapedBond, IsThePlainBondOfItsTurnedFrames) {
+  BondStiffness k = shearing_bond(), straight = k;
+  k.natural = {0.15, -0.1, 0.3};
+  Random random(7);
+  for (int n = 0; n < 100; ++n) {
+    const BondPose p = random_pose(random, 0.5);
+    const Quaternion half = natural_turn(k, 0.5 * test::element_length);
+    const BondForce f = force(p, k), g = force({p.separation, p.qi * half, p.qj * half.conjugate()}, straight);
+    const double size = 1 + g.force_j.norm() + g.torque_i.norm() + g.torque_j.norm();
+    ASSERT_LT((f.force_j - g.force_j).norm() + (f.torque_i - g.torque_i).norm() + (f.torque_j - g.torque_j).norm(),
+              1e-11 * size);
+    ASSERT_NEAR(f.energy.total(), g.energy.total(), 1e-11 * (1 + g.energy.total()));
+  }
+}
+
+// Small motions in the plane of each axis are those of a rod of its own stiffness.
+TEST(ShapedBond, BendsAndShearsByTheStiffnessOfItsAxis) {
+  BondStiffness k = test::shaped_bond();
+  k.natural = {};
+  const double a = test::element_length, h = 1e-3;
+  const Vector3 axes[] = {Vector3::UnitX(), Vector3::UnitY()};
+  for (const int axis : {0, 1}) {
+    BondStiffness rod = straightened(k);
+    rod.bend += axis == 0 ? k.bend_difference : -k.bend_difference;
+    const auto turned = [&](double angle) { return test::turn(axes[axis], angle); };
+    const auto bent = [&](const BondStiffness& of) { return energy({{0, 0, a}, turned(-0.5 * h), turned(0.5 * h)}, of); };
+    const auto sheared = [&](const BondStiffness& of) { return energy({{0, 0, a}, turned(h), turned(h)}, of); };
+    EXPECT_NEAR(bent(k) / (0.5 * rod.bend * h * h / a), 1, 1e-5) << axis;
+    EXPECT_NEAR(bent(k) / bent(rod), 1, 1e-5) << axis;
+    EXPECT_NEAR(sheared(k) / (6 * even_shear_share(rod, a) * rod.bend / a * h * h), 1, 1e-5) << axis;
+    EXPECT_NEAR(sheared(k) / sheared(rod), 1, 1e-5) << axis;
   }
 }
 
