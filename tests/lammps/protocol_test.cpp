@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/log.hpp"
+#include "lammps/model.hpp"
 #include "lammps/support.hpp"
 
 namespace ropewalk::test {
@@ -407,6 +408,14 @@ std::string linked_scene(const std::string& links) {
 
 TEST_F(LammpsEvents, LinksOfTheStartBreakAsHere) {
   expect_equal_events(linked_scene("per_nm = 0.4\nbreaks_at_eV = 0.01\n"), {{"link formed", 200}, {"link broke", 10}});
+}
+
+// Their search would compare all elements with each other: a rank knows no place of any when it reads the scene.
+TEST_F(LammpsRun, ARankPlacesNoLinks) {
+  exported(linked_scene("per_nm = 0.4\nat_ends = 1\nbreaks_at_eV = 0.01\n"), "out");
+  const LammpsModel model = load_lammps_model((dir / "out").string());
+  ASSERT_EQ(model.interaction.terms.size(), 2U) << "links and the ends of tubes";
+  for (const auto& term : model.interaction.terms) EXPECT_EQ(term->begun_at_start(), 0) << term->name();
 }
 
 // Links are placed during the run, at ends too, and form from then on wherever an element has room for one.
