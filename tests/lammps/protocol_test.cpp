@@ -852,6 +852,36 @@ TEST_F(LammpsRun, AJobWhoseTimeIsOverSubmitsTheNextOne) {
   EXPECT_EQ(run("import out --accept-changes").code, 0);  // of the number of steps
 }
 
+// Two pieces that end where their second is over, and a third one, against one run of as many steps.
+TEST_F(LammpsRun, ThreePiecesHaveTheBitsOfOneRun) {
+  exported(line_scene("mixed", small_rope, hot_twist), "pieces");
+  const std::string whole = copied("pieces", "whole"), every = " -var every 48";
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const int elements = prepare(scene).topology.elements();
+  const auto last = [&](const std::string& folder) {
+    return find_states((dir / folder / "lammps.states").string(), elements).back();
+  };
+  std::string goes_on;
+  std::int64_t reached = 0;
+  for (int piece = 0; piece < 2; ++piece) {
+    const Outcome o = lmp(2, "pieces", "-in in.rope -var wall 1 -var steps 100000000" + every + goes_on);
+    ASSERT_EQ(o.code, 6) << o.out << o.err;
+    EXPECT_GT(last("pieces").header.step, reached);
+    reached = last("pieces").header.step;
+    EXPECT_TRUE(reached % 48 == 0 || reached % 512 == 0) << reached;
+    goes_on = " -var from lammps.states";
+  }
+  const std::string end = " -var steps " + std::to_string(reached + 100) + every;
+  ASSERT_EQ(lmp(2, "pieces", "-in in.rope" + end + goes_on).code, 0);
+  ASSERT_EQ(lmp(2, whole, "-in in.rope" + end).code, 0);
+  const auto bytes = [&](const std::string& folder) {
+    const StateInFile state = last(folder);
+    return slurp(dir / folder / "lammps.states").substr(static_cast<std::size_t>(state.record(0)));
+  };
+  EXPECT_EQ(last("pieces").header.step, reached + 100);
+  EXPECT_TRUE(bytes("pieces") == bytes(whole));
+}
+
 TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {
   exported(rope(""), "out");
   ASSERT_EQ(lmp(1, "out", "-in in.rope -var steps 10 -var every 10").code, 0);
