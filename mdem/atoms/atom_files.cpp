@@ -65,6 +65,7 @@ class Lines {
     ++number_;
     return true;
   }
+  bool ends_with_newline() const { return !file_.eof(); }
   const std::string& text() const { return line_; }
   const std::string& path() const { return path_; }
   int number() const { return number_; }
@@ -338,8 +339,9 @@ class AtomDumpReader : public Reader {
   bool states_time() const override { return states_time_; }
 
  private:
+  // LAMMPS ends each line: a number at the end of one without an end may have lost digits.
   void need() {
-    if (!lines_.next()) throw CutOff();
+    if (!lines_.next() || !lines_.ends_with_newline()) throw CutOff();
   }
 
   AtomBox read_box(const std::string& head) {

@@ -103,6 +103,13 @@ LammpsScript script_of(const Scene& scene, const Prepared& p, const Simulation& 
   return script;
 }
 
+std::uint64_t id_of(const RunDirectory& run, const LammpsStart& start, const std::string& tubes,
+                    const std::string& state) {
+  std::string sums = hash_hex(read_file(run.scene())) + hash_hex(tubes) + hash_hex(state);
+  for (const std::string& set : start.parameters) sums += hash_hex(read_file(run.path + "/" + set));
+  return std::stoull(hash_hex(sums), nullptr, 16);
+}
+
 constexpr const char* readme =
     "Run:              lmp-ropewalk -in in.rope\n"
     "Run on N ranks:   mpirun -np N lmp-ropewalk -in in.rope      (or, with SLURM: sbatch job.sh)\n"
@@ -130,11 +137,11 @@ void write_lammps_files(const RunDirectory& run, RunListener& listener) {
                               "log_every_ps = {:.4g} has no say; for as many rows set run.frames_every_ps = {:.4g} "
                               "and export again",
                               apart, wanted, wanted));
-  for (const auto& [path, content] :
-       {std::pair{dir.tubes(), tubes_csv(p.topology)},
-        std::pair{dir.first_state(),
-                  state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory())},
-        std::pair{dir.input(), lammps_input(script)}}) {
+  const std::string tubes = tubes_csv(p.topology);
+  const auto state = [&] { return state_file(header, s.state(), s.forces().force, s.forces().torque, s.memory()); };
+  start.id = header.of_export = id_of(run, start, tubes, state());
+  for (const auto& [path, content] : {std::pair{dir.tubes(), tubes}, std::pair{dir.first_state(), state()},
+                                      std::pair{dir.input(), lammps_input(script)}}) {
     start.sums[fs::path(path).filename().string()] = hash_hex(content);
     write_file_atomically(path, content);
   }

@@ -70,16 +70,19 @@ class Import {
     remove_run_parts(dir_);
     log_ = read_file(dir_.log()).substr(0, checkpoint_.files.log.bytes);
     const std::string there = dir_.frames();
-    if (checkpoint_.files.events.bytes > 0)
+    if (checkpoint_.files.events.bytes > 0) {
       event_text_ = read_file(dir_.events()).substr(0, checkpoint_.files.events.bytes);
-    const std::vector<TubeBreak> breaks = tube_breaks(dir_.events());
-    told_of_break_ = std::any_of(breaks.begin(), breaks.end(), [](const TubeBreak& b) { return b.time_ps > 0; });
+      const double until = start_.state().time;
+      const std::vector<TubeBreak> breaks = tube_breaks(dir_.events());
+      told_of_break_ = std::any_of(breaks.begin(), breaks.end(),
+                                   [&](const TubeBreak& b) { return b.time_ps > 0 && b.time_ps <= until; });
+    }
     frames_ = std::make_unique<NewFrames>(there, format_of(there), 0, there, checkpoint_.files.frames.bytes);
     const std::int64_t from = reached_;
     watch_.inherit_from(checkpoint_.limits.limits, from);
     mark_ = energy_mark(start_);
     marked_at_ = from;
-    take_states(files_.states());
+    take_states(files_.states(), began.id);
     if (reached_ == from)
       throw InputError({files_.states(), 0, ""}, fmt::format("holds no whole state after step {}", from),
                        "let LAMMPS run further, or go on with `ropewalk resume`");
@@ -88,8 +91,8 @@ class Import {
   }
 
  private:
-  void take_states(const std::string& path) {
-    LammpsStates states(path, prepared_.topology);
+  void take_states(const std::string& path, std::uint64_t of_export) {
+    LammpsStates states(path, prepared_.topology, of_export);
     State state;
     Vec3Array force, torque;
     while (states.next(state, force, torque)) {
@@ -256,9 +259,18 @@ class Import {
         loads);
   }
 
+  // An import that was killed has left what this one writes, or the beginning of it.
+  void refuse_strange_events() const {
+    if (checkpoint_.files.events.bytes > 0 || !fs::exists(dir_.events())) return;
+    if (event_text_.rfind(read_file(dir_.events()), 0) != 0)
+      throw InputError({dir_.events(), 0, ""}, "has events of another run: this one had none when it was exported",
+                       "take the file away");
+  }
+
   // All is made before the first file is touched, and the checkpoint is written last: until it is there the run
   // stands where it stood, and all of this can be done again.
   void write(std::int64_t from) {
+    refuse_strange_events();
     Simulation simulation = start(scene_, prepared_);
     simulation.set_memory(memory_);
     simulation.divide_steps(static_cast<int>(steps_.divided));

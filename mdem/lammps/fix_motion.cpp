@@ -86,7 +86,7 @@ FixMotion::~FixMotion() {
 int FixMotion::setmask() { return POST_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | POST_NEIGHBOR | PRE_FORCE; }
 
 void FixMotion::init() {
-  looked_ = MPI_Wtime();
+  slowest_ = 0;
   check_atoms(lmp, style);
   check_styles(lmp, *model_);
   orientations(lmp);
@@ -95,6 +95,7 @@ void FixMotion::init() {
     refuse(lmp, "the time step is not that of the export", "take it from in.rope, or export a scene with another");
   grip_ = find_fix<FixGrip>(lmp);
   damp_ = find_fix<FixDamp>(lmp);
+  states_ = find_fix<FixStates>(lmp);
   engine_ = engine_of(lmp);
   if (model_->thermostat && !engine_)
     refuse(lmp, "[thermostat] acts through the engine, and forces are computed pair by pair",
@@ -153,11 +154,24 @@ void FixMotion::look_at_list(int& signal) {
   if (engine_->stale(signal)) next_reneighbor = update->ntimestep;
 }
 
+LMP::bigint FixMotion::steps_to_stop(LMP::bigint ahead) const {
+  const auto from = [&](LMP::bigint first, LMP::bigint every) {
+    const LMP::bigint behind = (update->ntimestep + ahead - first) % every;
+    return ahead + (behind == 0 ? 0 : every - behind);
+  };
+  const LMP::bigint next = from(model_->start.step, lammps_steps_between_stops);
+  return states_ ? std::min(next, from(0, states_->nevery)) : next;
+}
+
 void FixMotion::stop_in_time() {
   if (!may_stop_now()) return;
-  const double now = MPI_Wtime(), took = now - std::exchange(looked_, now);
+  const double now = MPI_Wtime();
+  const auto step = update->ntimestep;
+  slowest_ = std::max(slowest_, (now - looked_) / static_cast<double>(step - looked_step_));
+  looked_ = now;
+  looked_step_ = step;
   const double left = timer->get_timeout_remain();  // s; 0: there is no such time
-  int ends = left != 0 && left < 1.5 * took ? 1 : 0;
+  int ends = left != 0 && left < 1.5 * slowest_ * static_cast<double>(steps_to_stop(1)) ? 1 : 0;
   MPI_Bcast(&ends, 1, MPI_INT, 0, world);
   if (ends) timer->force_timeout();
 }
@@ -226,6 +240,8 @@ void FixMotion::setup_pre_neighbor() {
 void FixMotion::setup_pre_force(int vflag) {
   check_masses();
   pre_force(vflag);
+  looked_step_ = update->ntimestep;
+  looked_ = MPI_Wtime();
 }
 
 // Sends the orientations to ghosts. LAMMPS itself does so only when it builds lists.

@@ -12,6 +12,8 @@
 
 namespace ropewalk::lammps {
 
+class FixStates;
+
 class FixMotion : public LMP::Fix {
  public:
   FixMotion(LMP::LAMMPS* lmp, int count, char** words);
@@ -69,10 +71,9 @@ class FixMotion : public LMP::Fix {
   // What LAMMPS does between two steps. Whether the engine's list is too old; `signal` becomes the largest of all
   // ranks.
   void look_at_list(int& signal);
-  bool may_stop_now() const {
-    return (update->ntimestep - model_->start.step) % lammps_steps_between_stops == 0;
-  }
-  // Ends the run at such a step if the time of -var wall is over before the next one. All ranks.
+  // Lists are built in any case at such steps, and at those of states: a run that ends there goes on with the same bits.
+  bool may_stop_now() const { return steps_to_stop(0) == 0; }
+  // Ends the run there if the time of -var wall is over before the next such step. All ranks.
   void stop_in_time();
   bool exchanged_now() const;
   void hand_out();  // own elements, to LAMMPS's arrays
@@ -85,6 +86,7 @@ class FixMotion : public LMP::Fix {
   std::shared_ptr<const LammpsModel> model_;
   FixGrip* grip_ = nullptr;
   FixDamp* damp_ = nullptr;
+  const FixStates* states_ = nullptr;
   RankEngine* engine_ = nullptr;  // none: plain forms
   EnergySupply account_;          // this rank's share
   LMP::bigint carried_ = 0;       // the step whose forces are stored with the elements
@@ -101,11 +103,15 @@ class FixMotion : public LMP::Fix {
   std::vector<double>& memory_of(int i) { return memory_[static_cast<std::size_t>(i)]; }
   void bring_memory();
   void find_longest();
+  // Steps to the first step at which a run may end and that is at least so many steps ahead.
+  LMP::bigint steps_to_stop(LMP::bigint ahead) const;
 
   State moved_;  // buffer of move()
   std::vector<double> row_;
   LMP::bigint row_step_ = -1;
-  double looked_ = 0;  // s, since the start of the system: when the last such step was made
+  LMP::bigint looked_step_ = 0;  // the step at which the run began, or the last one at which it might have ended
+  double looked_ = 0;            // when that was, s
+  double slowest_ = 0;           // s: how long a step takes, in the slowest stretch between two of them
   double first_skin_ = 0;  // for a run that goes on: the skin of the list (nm; 0: as the engine chooses)
   // Records of force terms, of each own element and each copy; up to date from before an exchange until the list is
   // built. Lists of numbers as those of sim/forces/force_terms.hpp.

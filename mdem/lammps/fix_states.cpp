@@ -114,7 +114,7 @@ void FixStates::make_elements(const std::string& path) {
   orientations(lmp);
   std::string trouble;
   if (comm->me == 0)
-    trouble = trouble_of([&] { began_ = last_state(path, model_->topology.elements()); });
+    trouble = trouble_of([&] { began_ = last_state(path, model_->topology.elements(), model_->start.id); });
   refuse_together(lmp, trouble);
   MPI_Bcast(&began_, sizeof began_, MPI_BYTE, 0, world);
   has_begun_ = true;
@@ -286,7 +286,7 @@ void FixStates::begin_file(const std::string& start) {
     trouble = trouble_of([&] {
       std::error_code none;
       if (start == path_ ? fs::exists(path_) : fs::equivalent(start, path_, none))
-        for (const StateInFile& s : find_states(path_, model_->topology.elements()))
+        for (const StateInFile& s : find_states(path_, model_->topology.elements(), model_->start.id))
           if (s.header.step <= update->ntimestep) {
             place_ = {s.end(), s.header.step};
           }
@@ -324,6 +324,7 @@ void FixStates::write() {
   state.at = place_.end;
   state.header.step = update->ntimestep;
   state.header.elements = model_->topology.elements();
+  state.header.of_export = model_->start.id;
   state.header.time = model_->time_at(update->ntimestep);
   state.header.skin = engine ? engine->skin() : 0;
   if (motion) {

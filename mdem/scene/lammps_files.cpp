@@ -26,13 +26,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char *start_format = "ropewalk-lammps-2", *sums_key = "sums",
-                     *came_broken_key = "tubes_came_broken", *images_key = "images",
-                     *period_key = "period_nm";
+constexpr const char *start_format = "ropewalk-lammps-3", *images_key = "images";
 constexpr const char* export_again = "export the run again with `ropewalk export`";
 
 template <class S, class Visit>
 void visit_start(S&& s, const Visit& v) {
+  v({"id", "", "hash of scene, parameter sets, tubes and first state, which states of this export bear"}, s.id);
   v({"step", "", "time step of the export"}, s.step);
   v({"time_ps", "ps", "time of the export"}, s.time);
   v({"time_step_ps", "ps", "time step"}, s.time_step);
@@ -45,13 +44,13 @@ void visit_start(S&& s, const Visit& v) {
   v({"strand_holes_nm", "nm", "between the tubes of a strand at the start: their sum, of the strand with most"},
     s.strand_holes);
   v({images_key, "", "elements at each end of a strand that are images, in a slice; else 0"}, s.images);
-  v({period_key, "nm", "period of a slice at the start; else 0"}, s.period);
+  v({"period_nm", "nm", "period of a slice at the start; else 0"}, s.period);
   v({"viscosity_inner_nm", "nm", "distance up to which contact viscosity acts in full"}, s.viscosity_inner);
   v({"viscosity_outer_nm", "nm", "distance beyond which there is no contact viscosity"}, s.viscosity_outer);
-  v({came_broken_key, "", "whether tubes were broken in the state that the scene began with, and no others break"},
+  v({"tubes_came_broken", "", "whether tubes were broken in the state that the scene began with, and no others break"},
     s.tubes_came_broken);
   v({"parameters", "", "files of the parameter sets, by type of the tube"}, s.parameters);
-  v({sums_key, "", "hashes of `in.rope`, `tubes.csv` and `rope.state`, to which `import` holds them"}, s.sums);
+  v({"sums", "", "hashes of `in.rope`, `tubes.csv` and `rope.state`, to which `import` holds them"}, s.sums);
 }
 
 // Takes the next number off `text`, and what separates it from the next.
@@ -151,9 +150,6 @@ LammpsStart read_start(const LammpsDirectory& dir) {
     if (json.at("format") != start_format)
       throw InputError({path, 0, "format"}, fmt::format("\"{}\" is needed", start_format), export_again);
     visit_start(start, [&](const OutputColumn& key, auto& value) {
-      // Version 0.3.0 wrote none of these.
-      for (const char* newer : {sums_key, came_broken_key, images_key, period_key})
-        if (key.name == std::string(newer) && !json.contains(key.name)) return;
       const Json& found = json.at(key.name);
       using Value = std::decay_t<decltype(value)>;
       if (std::is_integral_v<Value> && !std::is_same_v<Value, bool> && !found.is_number_integer())
@@ -366,7 +362,10 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
   std::string title;
   for_each_line(read_file(dir.rows()), [&](int number, std::string_view line) {
     if (number == 1) title = line;
-    if (line == title) return;  // a restarted run writes it again
+    if (number == 1 && title.rfind(row_title(static_cast<int>(terms)), 0) != 0)
+      throw InputError({dir.rows(), number, ""}, "has another title than the rows of this export", "run LAMMPS again");
+    // A run that goes on writes it again, perhaps behind a row that a kill has cut off.
+    if (line.size() >= title.size() && line.substr(line.size() - title.size()) == title) return;
     LammpsRow r;
     r.terms.resize(terms);
     r.accounts.resize(terms);
@@ -375,8 +374,7 @@ std::vector<LammpsRow> read_lammps_rows(const LammpsDirectory& dir, std::size_t 
                                    &r.vdw,  &r.kinetic, &r.work,    &r.dissipated, &r.heat};
     for (std::size_t k = 0; k < terms; ++k) {
       TermAccount& a = r.accounts[k];
-      values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events});
-      if (title.find(",begun") != std::string::npos) values.push_back(&a.begun);  // files of version 0.3.0 do not have it
+      values.insert(values.end(), {&r.terms[k], &a.lost, &a.drag, &a.events, &a.begun});
     }
     for (double* value : values) {
       if (!take(line, *value))

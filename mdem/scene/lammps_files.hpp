@@ -22,6 +22,7 @@
 namespace ropewalk {
 
 struct LammpsStart {
+  std::uint64_t id = 0;                             // of this export: a hash of its scene, sets, tubes and state
   std::int64_t step = 0;
   double time = 0;                                  // ps
   double time_step = 0;                             // ps
@@ -34,7 +35,7 @@ struct LammpsStart {
   double viscosity_inner = 0, viscosity_outer = 0;  // nm
   bool tubes_came_broken = false;                   // tubes are broken in the first state, and no others break
   std::vector<std::string> parameters;              // a file for each tube type
-  std::map<std::string, std::string> sums;          // sum of each LAMMPS file, by name; empty: an older export
+  std::map<std::string, std::string> sums;          // sum of each LAMMPS file, by name
 };
 
 struct LammpsDirectory {

@@ -54,7 +54,8 @@ void append(std::string& to, const T& value) {
 
 std::vector<OutputColumn> lammps_state_columns() { return {record_columns.begin(), record_columns.end()}; }
 
-std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements) {
+std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements,
+                                     std::optional<std::uint64_t> of_export) {
   std::ifstream file = opened_stream(path);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   std::vector<StateInFile> found;
@@ -66,6 +67,7 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
     if (h.mark == std::array<char, 8>{}) break;
     if (h.mark != state_mark) fail("does not begin as a state does");
     if (h.elements != elements) fail(fmt::format("{} elements are here, {} in the scene", h.elements, elements));
+    if (of_export && h.of_export != *of_export) fail("is of another export");
     if (h.memory < 0 || h.memory > bytes) fail(fmt::format("{} numbers of memory", h.memory));
     for (const std::int64_t step : {h.step, h.kept_until, h.keep})
       if (step < 0 || step > largest_step) fail(fmt::format("{} is no step", step));
@@ -78,8 +80,8 @@ std::vector<StateInFile> find_states(const std::string& path, std::int64_t eleme
   return found;
 }
 
-StateInFile last_state(const std::string& path, std::int64_t elements) {
-  const std::vector<StateInFile> all = find_states(path, elements);
+StateInFile last_state(const std::string& path, std::int64_t elements, std::optional<std::uint64_t> of_export) {
+  const std::vector<StateInFile> all = find_states(path, elements, of_export);
   if (all.empty()) throw InputError({path, 0, ""}, "holds no whole state", ask_for_export);
   return all.back();
 }
@@ -123,8 +125,9 @@ std::vector<double> memory_in(const std::string& path, const StateInFile& state)
   return memory;
 }
 
-LammpsStates::LammpsStates(const std::string& path, const Topology& topology)
-    : path_(path), all_(find_states(path, topology.elements())), file_(opened_stream(path)) {}
+LammpsStates::LammpsStates(const std::string& path, const Topology& topology,
+                           std::optional<std::uint64_t> of_export)
+    : path_(path), all_(find_states(path, topology.elements(), of_export)), file_(opened_stream(path)) {}
 
 bool LammpsStates::next(State& s, Vec3Array& force, Vec3Array& torque) {
   if (next_ == all_.size()) return false;

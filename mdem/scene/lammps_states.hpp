@@ -1,5 +1,5 @@
 // The binary files of states that `ropewalk export` and `lmp-ropewalk` exchange: rope.state, where LAMMPS begins,
-// and lammps.states, what it writes. A state is a header of 96 bytes and a record of 152 bytes for each element, in
+// and lammps.states, what it writes. A state is a header of 104 bytes and a record of 152 bytes for each element, in
 // the order of the scene, then the memories of the force terms (ForceTerms::memory()), if any; all numbers
 // little-endian. Every process so knows where an element's record is, and many
 // of them read or write one file at once.
@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@
 namespace ropewalk {
 
 // Written last: a state that a kill has cut off has zeros here.
-inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '3'};
+inline constexpr std::array<char, 8> state_mark = {'R', 'W', 'S', 'T', 'A', 'T', 'E', '4'};
 
 struct StateHeader {
   std::array<char, 8> mark = state_mark;
@@ -30,13 +31,14 @@ struct StateHeader {
   std::int64_t memory = 0;          // numbers behind the records, of the force terms
   // Into how many parts steps are divided, and StepControl's numbers.
   std::int64_t divided = 1, kept_until = 0, keep = StepControl::least_keep;
+  std::uint64_t of_export = 0;  // LammpsStart::id
 
   void set(int parts, const StepControl& control) {
     divided = parts, kept_until = control.kept_until, keep = control.keep;
   }
   StepControl control() const { return {kept_until, keep, 0}; }
 };
-static_assert(sizeof(StateHeader) == 96, "this is the format of the file");
+static_assert(sizeof(StateHeader) == 104, "this is the format of the file");
 
 // One element of a state: position, orientation, velocity, angular velocity, force and torque, as
 // lammps_state_columns() lists their components.
@@ -56,10 +58,13 @@ struct StateInFile {
 
 std::vector<OutputColumn> lammps_state_columns();
 
-// The states of a file that are whole, in the order of the file. Throws InputError for other files.
-std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements);
+// The states of a file that are whole, in the order of the file. Throws InputError for other files, and for states of
+// another export than this one; without `of_export` those of any export count.
+std::vector<StateInFile> find_states(const std::string& path, std::int64_t elements,
+                                     std::optional<std::uint64_t> of_export = std::nullopt);
 // The last one. Throws InputError where there is none.
-StateInFile last_state(const std::string& path, std::int64_t elements);
+StateInFile last_state(const std::string& path, std::int64_t elements,
+                       std::optional<std::uint64_t> of_export = std::nullopt);
 
 // Names the fault of a record that LAMMPS cannot have written: numbers that are not finite, or no unit quaternion.
 // Empty: none.
@@ -76,7 +81,8 @@ std::vector<double> memory_in(const std::string& path, const StateInFile& state)
 // Reads the states of a file one after another; one that is cut off is left out.
 class LammpsStates {
  public:
-  LammpsStates(const std::string& path, const Topology& topology);
+  LammpsStates(const std::string& path, const Topology& topology,
+               std::optional<std::uint64_t> of_export = std::nullopt);
   // False at the end.
   bool next(State& state, Vec3Array& force, Vec3Array& torque);
   // The memories of the force terms in the last state that was read.

@@ -108,6 +108,25 @@ TEST_F(AtomFile, LeavesOutAFrameThatIsCutOff) {
             std::string::npos);
 }
 
+// Also within its last number, which would stand for another place: LAMMPS ends each line.
+TEST_F(AtomFile, LeavesOutADumpThatIsCutOffAnywhere) {
+  const std::string frame =
+      "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+      "ITEM: ATOMS id element x y z\n1 C 0 0 1\n2 C 0 0 2.5\n";
+  std::string later = frame;
+  later[later.find('7')] = '8';
+  for (std::size_t length = 0; length <= later.size(); ++length) {
+    AtomFiles files({file("a.dump", frame + later.substr(0, length))}, 1);
+    AtomFrame read;
+    std::size_t frames = 0;
+    try {
+      while (files.next(read)) ++frames;
+    } catch (const InputError&) {  // a head that is cut off is named
+    }
+    EXPECT_EQ(frames, length < later.size() ? 1U : 2U) << length;
+  }
+}
+
 // A simulation that goes on writes the frame at which it was stopped once more.
 TEST_F(AtomFile, LeavesOutTheFrameAtWhichASecondFileGoesOn) {
   const auto dump = [](int step, double z) {

@@ -272,6 +272,50 @@ TEST_F(LammpsErrors, ImportHoldsWhatItReadsToTheExport) {
   EXPECT_NE(o.err.find("note: out/in.rope is not as it was exported"), std::string::npos) << o.err;
 }
 
+// Files of another run in the place of this one's: as many elements, and other tubes.
+TEST_F(LammpsErrors, FilesOfAnotherRunAreRefused) {
+  const auto scene = [](int tubes, const char* length) {
+    return "format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[rope]\ntubes = " +
+           std::to_string(tubes) + "\nlength_nm = " + length + "\n[run]\nduration_ps = 0.3\n";
+  };
+  exported(scene(19, "9.492"), "other");
+  exported(scene(7, "25.764"), "out");
+  for (const char* folder : {"out", "other"}) ASSERT_EQ(lmp(2, folder, "-in in.rope -var steps 10 -var every 5").code, 0);
+  const std::string states = slurp(dir / "out/lammps.states"), others = slurp(dir / "other/lammps.states");
+  ASSERT_EQ(states.size(), others.size());
+  const auto expect = [&](const Outcome& o, const std::string& text, const std::string& message) {
+    EXPECT_NE(o.code, 0) << message;
+    EXPECT_NE(text.find(message), std::string::npos) << text;
+  };
+  spit(dir / "out/lammps.states", others);
+  for (const int ranks : {1, 2}) {
+    const Outcome o = lmp(ranks, "out", "-in in.rope -var steps 20 -var every 5 -var from lammps.states");
+    expect(o, o.out, "lammps.states: state 1: is of another export");
+    EXPECT_EQ(slurp(dir / "out/lammps.states"), others) << "it is left as it was";
+  }
+  Outcome o = run("import out");
+  expect(o, o.err, "lammps.states: state 1: is of another export");
+  spit(dir / "out/lammps.states", states);
+  spit(dir / "out/events.csv",
+       "time_ps,event,tube,element,to_tube,to_element,x_nm,y_nm,z_nm\n0.01,tube broke,1,2,1,3,0,0,0\n");
+  o = run("import out");
+  expect(o, o.err, "events.csv: has events of another run");
+  EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+  fs::remove(dir / "out/events.csv");
+  spit(dir / "out/lammps-rows.csv", "step,temp\n0,300\n");
+  o = run("import out");
+  expect(o, o.err, "lammps-rows.csv:1: has another title");
+}
+
+// Most ranks then have no element.
+TEST_F(LammpsErrors, MoreRanksThanElementsGoOn) {
+  exported("format = \"ropewalk-scene-1\"\nparameters = \"cnt-10-10-paper\"\n[chain]\nelements = 3\n[start]\n"
+           "temperature_K = 300\nmay_cool = true\n[run]\nduration_ps = 1\n", "out");
+  const Outcome o = lmp(8, "out", "-in in.rope -var steps 40 -var every 20");
+  ASSERT_EQ(o.code, 0) << o.out << o.err;
+  EXPECT_EQ(run("import out").code, 0) << slurp(dir / "stderr.txt");
+}
+
 // Nothing is written before all of it is read.
 TEST_F(LammpsErrors, AnImportThatFailsLeavesTheRunAsItWas) {
   exported(

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/log.hpp"
+#include "lammps/model.hpp"
 #include "lammps/support.hpp"
 
 namespace ropewalk::test {
@@ -407,6 +408,14 @@ std::string linked_scene(const std::string& links) {
 
 TEST_F(LammpsEvents, LinksOfTheStartBreakAsHere) {
   expect_equal_events(linked_scene("per_nm = 0.4\nbreaks_at_eV = 0.01\n"), {{"link formed", 200}, {"link broke", 10}});
+}
+
+// Their search would compare all elements with each other: a rank knows no place of any when it reads the scene.
+TEST_F(LammpsRun, ARankPlacesNoLinks) {
+  exported(linked_scene("per_nm = 0.4\nat_ends = 1\nbreaks_at_eV = 0.01\n"), "out");
+  const LammpsModel model = load_lammps_model((dir / "out").string());
+  ASSERT_EQ(model.interaction.terms.size(), 2U) << "links and the ends of tubes";
+  for (const auto& term : model.interaction.terms) EXPECT_EQ(term->begun_at_start(), 0) << term->name();
 }
 
 // Links are placed during the run, at ends too, and form from then on wherever an element has room for one.
@@ -841,6 +850,36 @@ TEST_F(LammpsRun, AJobWhoseTimeIsOverSubmitsTheNextOne) {
   EXPECT_EQ(done.find("submitted"), std::string::npos) << done;
   EXPECT_EQ(reached(), after_first + 40);
   EXPECT_EQ(run("import out --accept-changes").code, 0);  // of the number of steps
+}
+
+// Two pieces that end where their second is over, and a third one, against one run of as many steps.
+TEST_F(LammpsRun, ThreePiecesHaveTheBitsOfOneRun) {
+  exported(line_scene("mixed", small_rope, hot_twist), "pieces");
+  const std::string whole = copied("pieces", "whole"), every = " -var every 48";
+  Scene scene = read_scene((dir / "scene.toml").string());
+  const int elements = prepare(scene).topology.elements();
+  const auto last = [&](const std::string& folder) {
+    return find_states((dir / folder / "lammps.states").string(), elements).back();
+  };
+  std::string goes_on;
+  std::int64_t reached = 0;
+  for (int piece = 0; piece < 2; ++piece) {
+    const Outcome o = lmp(2, "pieces", "-in in.rope -var wall 1 -var steps 100000000" + every + goes_on);
+    ASSERT_EQ(o.code, 6) << o.out << o.err;
+    EXPECT_GT(last("pieces").header.step, reached);
+    reached = last("pieces").header.step;
+    EXPECT_TRUE(reached % 48 == 0 || reached % 512 == 0) << reached;
+    goes_on = " -var from lammps.states";
+  }
+  const std::string end = " -var steps " + std::to_string(reached + 100) + every;
+  ASSERT_EQ(lmp(2, "pieces", "-in in.rope" + end + goes_on).code, 0);
+  ASSERT_EQ(lmp(2, whole, "-in in.rope" + end).code, 0);
+  const auto bytes = [&](const std::string& folder) {
+    const StateInFile state = last(folder);
+    return slurp(dir / folder / "lammps.states").substr(static_cast<std::size_t>(state.record(0)));
+  };
+  EXPECT_EQ(last("pieces").header.step, reached + 100);
+  EXPECT_TRUE(bytes("pieces") == bytes(whole));
 }
 
 TEST_F(LammpsRun, ImportRefusesALogOfOtherColumns) {

@@ -93,6 +93,7 @@ TEST_F(LammpsFiles, WrongTubesAreRefused) {
 
 TEST_F(LammpsFiles, StartKeepsItsBits) {
   LammpsStart s;
+  s.id = 0xfedcba9876543210;
   s.step = 123456789012;
   s.time = 0.1 + 0.2;
   s.time_step = 1.0 / 3;
@@ -103,6 +104,7 @@ TEST_F(LammpsFiles, StartKeepsItsBits) {
   s.parameters = {"parameters.toml", "parameters-1.toml"};
   spit(dir.start(), start_json(s));
   const LammpsStart back = read_start(dir);
+  EXPECT_EQ(back.id, s.id);
   EXPECT_EQ(back.step, s.step);
   EXPECT_EQ(back.time, s.time);
   EXPECT_EQ(back.time_step, s.time_step);
@@ -113,7 +115,7 @@ TEST_F(LammpsFiles, StartKeepsItsBits) {
   EXPECT_EQ(back.parameters, s.parameters);
   spit(dir.start(), "{\"format\": \"something else\"}");
   EXPECT_THROW(read_start(dir), InputError);
-  spit(dir.start(), "{\"format\": \"ropewalk-lammps-2\"}");
+  spit(dir.start(), "{\"format\": \"ropewalk-lammps-3\"}");
   EXPECT_THROW(read_start(dir), InputError);
 }
 
@@ -168,7 +170,7 @@ TEST_F(LammpsStateFiles, WhatIsNotWholeDoesNotCount) {
 }
 
 TEST_F(LammpsStateFiles, OfOtherScenesOrProgramsAreRefused) {
-  EXPECT_THROW(read(std::string(100, 'x')), InputError);
+  EXPECT_THROW(read(std::string(200, 'x')), InputError);
   header.elements = 3;
   EXPECT_THROW(read(bytes()), InputError);
   header.elements = 2;
@@ -177,6 +179,11 @@ TEST_F(LammpsStateFiles, OfOtherScenesOrProgramsAreRefused) {
   header.step = 1;
   header.work = std::nan("");
   EXPECT_THROW(read(bytes()), InputError);
+  header.work = 0;
+  header.of_export = 7;
+  spit(dir.states(), bytes());
+  EXPECT_EQ(find_states(dir.states(), 2, 7).size(), 1U);
+  EXPECT_THROW(find_states(dir.states(), 2, 8), InputError) << "as many elements, and another scene";
 }
 
 // A quaternion of norm 3 placed elements where they are not.
@@ -195,18 +202,21 @@ TEST_F(LammpsStateFiles, NumbersThatLammpsDoesNotWriteAreRefused) {
 
 // A number beyond all integers was cast to one.
 TEST_F(LammpsFiles, RowsThatLammpsDoesNotWriteAreRefused) {
-  const std::string title = "step,time_ps,stretch_eV\n";
+  const std::string title =
+      "step,time_ps,stretch_eV,shear_eV,bend_eV,twist_eV,vdw_eV,kinetic_eV,work_eV,dissipated_eV,heat_eV\n";
+  const std::string good = "1,0,0,0,0,0,0,0,0,0,0\n";
+  spit(dir.rows(), title + good + "2,0,0.5" + title + good);
+  EXPECT_EQ(read_lammps_rows(dir).size(), 2U) << "a kill has cut a row off, and the run went on";
+  spit(dir.rows(), "step,time_ps\n" + good);
+  EXPECT_THROW(read_lammps_rows(dir), InputError) << "rows of another program";
   for (const char* row : {"1e300,0,0,0,0,0,0,0,0,0,0\n", "nan,0,0,0,0,0,0,0,0,0,0\n", "-1,0,0,0,0,0,0,0,0,0,0\n",
                           "0.5,0,0,0,0,0,0,0,0,0,0\n", "1,0,0,inf,0,0,0,0,0,0,0\n"}) {
     spit(dir.rows(), title + row);
     EXPECT_THROW(read_lammps_rows(dir), InputError) << row;
   }
-  spit(dir.start(),
-       "{\"format\": \"ropewalk-lammps-2\", \"step\": 1, \"time_ps\": 0, \"time_step_ps\": 1, \"work_eV\": 0, "
-       "\"dissipated_eV\": 0, \"heat_eV\": 0, \"lineage\": 0, \"strands_begin_with_tubes\": [], "
-       "\"strand_holes_nm\": 0, \"viscosity_inner_nm\": 0, \"viscosity_outer_nm\": "
-       "0, \"parameters\": "
-       "[\"../other.toml\"]}");
+  LammpsStart start;
+  start.parameters = {"../other.toml"};
+  spit(dir.start(), start_json(start));
   EXPECT_THROW(read_start(dir), InputError);
 }
 
