@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "atomistic/finite_tube.hpp"
+#include "atomistic/options.hpp"
 #include "atomistic/runs.hpp"
 #include "io/clocks.hpp"
 
@@ -326,6 +327,8 @@ WalledStiffness measure_walls(const std::vector<Chirality>& chiralities, const P
   const auto tell = [&](const std::string& line) {
     if (options.progress) options.progress(line);
   };
+  for (const Chirality c : chiralities) check_tube(c, potential.honeycomb.lattice_constant);
+  check_options(options);
   WalledStiffness out;
   const LammpsVersion lammps = lammps_version(options.lammps);
   tell("relaxing the walls, each alone and then together");

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "atomistic/walled_tube.hpp"
 #include "atoms/honeycomb_file.hpp"
 #include "io/data_files.hpp"
 #include "io/file_group.hpp"
@@ -369,6 +370,7 @@ int calibrate_command(const CalibrateArguments& a) {
                        "give one wall, or leave --atoms away");
     if (!a.envelope_of.empty())
       throw InputError({"", 0, "--envelope-of"}, "takes the limits of a tube of one wall", "measure with --envelope");
+    walled_pair_commands(request.potential, {}, walls.size());  // refuses a potential that walls cannot have each
   } else if (!a.carried_by.empty()) {
     throw InputError({"", 0, "--carried-by"}, "is about several walls", "leave it out for a tube of one wall");
   }
