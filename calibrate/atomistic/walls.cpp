@@ -321,6 +321,11 @@ void append(std::vector<AtomisticRow>& to, const std::vector<AtomisticRow>& rows
 
 }  // namespace
 
+std::pair<double, double> specimen_lengths(const std::vector<Chirality>& walls) {
+  const double shorter = std::clamp(3 * 2 * tube_radius(walls.back()), 3.0, 6.0);
+  return {shorter, 2 * shorter};
+}
+
 WalledStiffness measure_walls(const std::vector<Chirality>& chiralities, const Potential& potential,
                               const LennardJones& law, Holding carried, const std::string& folder,
                               const StiffnessOptions& options) {
