@@ -15,7 +15,7 @@ namespace ropewalk::calibrate {
 
 PairStyle pair_style_of(const Potential& potential, const std::string& why) {
   const auto refuse = [&](const std::string& line) {
-    throw InputError({potential.file, 0, "--potential"},
+    throw InputError({potential.file, 0, potential.name == "user" ? "--potential-file" : "--potential"},
                      fmt::format("has the line \"{}\", {}", printable(line, 60), why),
                      "take one with pair_style STYLE and pair_coeff * * FILE C");
   };

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "atomistic/finite_tube.hpp"
+#include "atomistic/options.hpp"
 #include "atomistic/runs.hpp"
 #include "io/clocks.hpp"
 #include "io/grade.hpp"
@@ -21,6 +22,8 @@ double default_bend_strain(double radius) { return std::min(0.02, 0.007 / radius
 InputError bad_option(const char* key, const std::string& what, const std::string& remedy) {
   return InputError({"", 0, key}, what, remedy);
 }
+
+}  // namespace
 
 void check_tube(Chirality c, double a) {
   if (!c.valid())
@@ -48,6 +51,8 @@ void check_options(const StiffnessOptions& o) {
     throw bad_option("bend lengths", "must be 2 to 100 nm, the long one at least 1 nm longer",
                      "the defaults are 6 and 10 nm");
 }
+
+namespace {
 
 // Checks of the options before the first LAMMPS run, since an error after minutes would cost time.
 void check_size(Chirality c, const Potential& potential, const StiffnessOptions& options) {

@@ -9,6 +9,15 @@
 #include "atomistic/runs.hpp"
 
 namespace ropewalk::calibrate {
+namespace {
+
+// A minimiser that writes nothing for long is taken for dead (LammpsOptions::quiet_seconds). Steps of many atoms are slow.
+std::size_t steps_between_lines(std::size_t atoms) {
+  return std::clamp(std::size_t{200'000} / atoms, std::size_t{10}, std::size_t{500});
+}
+
+}  // namespace
+
 std::string walled_pair_commands(const Potential& potential, const LennardJones& law, std::size_t walls) {
   const PairStyle own = pair_style_of(potential, "which several walls cannot have each");
   std::string styles = "pair_style hybrid/overlay", coefficients;
@@ -100,9 +109,9 @@ std::string WalledTube::commands(const Potential& potential, const LennardJones&
       "min_style cg\n"
       "min_modify dmax 0.05 line quadratic\n"
       "thermo_style custom step pe fnorm fmax c_rho{}\n"
-      "thermo 500\n"
+      "thermo {}\n"
       "thermo_modify flush yes lost error norm no format float %.12g\n",
-      parts_.size(), 0.2 * free_length() / angstrom, totals, columns);
+      parts_.size(), 0.2 * free_length() / angstrom, totals, columns, steps_between_lines(atoms_));
   return text;
 }
 

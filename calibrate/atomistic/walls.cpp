@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "atomistic/finite_tube.hpp"
+#include "atomistic/options.hpp"
 #include "atomistic/runs.hpp"
 #include "io/clocks.hpp"
 
@@ -320,12 +321,19 @@ void append(std::vector<AtomisticRow>& to, const std::vector<AtomisticRow>& rows
 
 }  // namespace
 
+std::pair<double, double> specimen_lengths(const std::vector<Chirality>& walls) {
+  const double shorter = std::clamp(3 * 2 * tube_radius(walls.back()), 3.0, 6.0);
+  return {shorter, 2 * shorter};
+}
+
 WalledStiffness measure_walls(const std::vector<Chirality>& chiralities, const Potential& potential,
                               const LennardJones& law, Holding carried, const std::string& folder,
                               const StiffnessOptions& options) {
   const auto tell = [&](const std::string& line) {
     if (options.progress) options.progress(line);
   };
+  for (const Chirality c : chiralities) check_tube(c, potential.honeycomb.lattice_constant);
+  check_options(options);
   WalledStiffness out;
   const LammpsVersion lammps = lammps_version(options.lammps);
   tell("relaxing the walls, each alone and then together");

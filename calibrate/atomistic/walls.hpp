@@ -13,6 +13,7 @@
 // are free to slide.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "atomistic/stiffness.hpp"
@@ -37,6 +38,11 @@ struct WalledStiffness {
 
 // Distances between walls at which they fit (nm), and the one of graphite.
 inline constexpr double least_wall_spacing = 0.28, most_wall_spacing = 0.45, graphite_spacing = 0.34;
+
+// Free lengths of the shorter and of the longer specimen (nm), where none are given: three and six outer diameters. Near
+// its ends a free wall does not bend along, over a length that grows with its width. At most 6 and 12 nm, since wide tubes
+// have many atoms.
+std::pair<double, double> specimen_lengths(const std::vector<Chirality>& walls);
 
 // Specimens of the lengths options.short_length and long_length (nm). `law`: between atoms of two walls. `carried`:
 // the way of holding whose bond beyond Hooke's law is wanted.

@@ -7,7 +7,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "atomistic/walled_tube.hpp"
+#include "atomistic/walls.hpp"
 #include "atoms/honeycomb_file.hpp"
 #include "io/data_files.hpp"
 #include "io/file_group.hpp"
@@ -369,14 +372,16 @@ int calibrate_command(const CalibrateArguments& a) {
                        "give one wall, or leave --atoms away");
     if (!a.envelope_of.empty())
       throw InputError({"", 0, "--envelope-of"}, "takes the limits of a tube of one wall", "measure with --envelope");
+    walled_pair_commands(request.potential, {}, walls.size());  // refuses a potential that walls cannot have each
   } else if (!a.carried_by.empty()) {
     throw InputError({"", 0, "--carried-by"}, "is about several walls", "leave it out for a tube of one wall");
   }
   request.law = law_of_request(a, request.honeycomb());
   if (a.usual_cutoff && walls.size() > 1) request.law.cutoff = cutoff_of_walls;
   request.stiffness = a.stiffness;
-  const std::string lengths = !a.bend_lengths.empty() ? a.bend_lengths : walls.size() > 1 ? "3,6" : "6,10";
-  if (!two_numbers(lengths, request.stiffness.short_length, request.stiffness.long_length))
+  StiffnessOptions& s = request.stiffness;
+  if (walls.size() > 1) std::tie(s.short_length, s.long_length) = specimen_lengths(walls);
+  if (!a.bend_lengths.empty() && !two_numbers(a.bend_lengths, s.short_length, s.long_length))
     throw InputError({"", 0, "--bend-lengths"}, fmt::format("is \"{}\"", printable(a.bend_lengths, 40)),
                      "write two lengths in nm, as in 6,10");
   request.stiffness.envelope = a.envelope;
@@ -450,7 +455,8 @@ void add_calibrate(CLI::App& app, Program& program) {
   app.add_option("--shear", a->stiffness.largest_shear, "Fit window of twist: radius times twist")
       ->capture_default_str();
   app.add_option("--bend-lengths", a->bend_lengths,
-                 "Free lengths of the shorter and the longer bent tube (nm) [default: 6,10; several walls: 3,6]");
+                 "Free lengths of the shorter and the longer bent tube (nm) [default: 6,10; several walls: 3 and 6 outer "
+                 "diameters, at most 6 and 12 nm]");
   app.add_flag("--json", a->json, "JSON");
   app.add_flag("--force", a->force, "Replace existing files");
   app.add_flag("--quiet", a->quiet, "No progress lines");

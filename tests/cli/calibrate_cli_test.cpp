@@ -43,6 +43,8 @@ TEST_F(Calibrate, WrongInputGetsOneLineAndLeavesNothing) {
   expect_refusal("--chirality 5,5 --quiet --atoms nothing", "--atoms: is \"nothing\"; name one of BN, C");
   expect_refusal("--chirality 5,5 --quiet --atoms BN --potential lcbop", "'lcbop' is none of BN");
   expect_refusal("--chirality 5,5 --quiet --atoms BN --lj 3e-3,0.34", "--lj: is one law, and BN has one for each pair");
+  expect_refusal("--chirality '(5,5)@(10,10)' --quiet --bend-lengths 6,3", "bend lengths: must be 2 to 100 nm, the long one");
+  expect_refusal("--chirality '(2,1)@(7,7)' --quiet", "(2,1) is 0.207 nm wide");
   expect_refusal("--chirality 5,5 --quiet --potential-file nowhere.txt", "nowhere.txt");
   expect_refusal("--chirality 5,5 --quiet --out set.txt", "--out");
   expect_refusal("--chirality 5,5 --quiet --out no/such/set.toml", "make the directory");
@@ -139,6 +141,17 @@ TEST_F(Calibrate, AChildThatFailsIsQuoted) {
   spit(dir / "potential.txt", "pair_style tersoff\npair_coeff * * " + (dir / "no.tersoff").string() + " C\n");
   keep.insert("potential.txt");
   expect_refusal("--chirality 5,5 --quiet --potential-file potential.txt", "no.tersoff");
+}
+
+// In one line of its own, before LAMMPS starts: each wall needs a pair style of its own.
+TEST_F(Calibrate, AHybridPotentialOfSeveralWallsIsRefused) {
+  spit(dir / "hybrid.txt", "pair_style hybrid/overlay tersoff zero 5.0\npair_coeff * * tersoff BNC.tersoff C\n"
+                           "pair_coeff * * zero\n");
+  spit(dir / "two.txt", "pair_style tersoff\npair_coeff * * BNC.tersoff C\npair_coeff 1 1 BNC.tersoff C\n");
+  keep.insert({"hybrid.txt", "two.txt"});
+  expect_refusal("--chirality '(5,5)@(10,10)' --quiet --potential-file hybrid.txt",
+                 "hybrid.txt: --potential-file: has the line \"pair_coeff * * zero\", which several walls cannot have");
+  expect_refusal("--chirality '(5,5)@(10,10)' --quiet --potential-file two.txt", "which several walls cannot have");
 }
 
 // One calibration from end to end; everything that can be asked of its files is asked here, since it takes seconds.
