@@ -7,6 +7,7 @@
 #include "model/contract.hpp"
 #include "model/counter_random.hpp"
 #include "model/error.hpp"
+#include "sim/dynamics/step_limit.hpp"
 #include "sim/statics/end_words.hpp"
 
 namespace ropewalk {
@@ -64,7 +65,15 @@ NewtonStatics::NewtonStatics(Simulation& simulation, const NewtonOptions& option
     : s_(simulation),
       options_(options),
       maker_(simulation),
-      sections_(sections_of(simulation.topology(), simulation.state())) {}
+      sections_(sections_of(simulation.topology(), simulation.state())) {
+  // The rates are those of carbon tubes, whose chains have 20 to 42 rad/ps. Heavy and soft filaments are slower.
+  constexpr double carbon = 20;
+  const double chain = time_step_limit(simulation.topology(), simulation.interaction(), 0).chain_frequency,
+               slower = std::min(1.0, chain / carbon);
+  options_.first_rate *= slower;
+  options_.least_rate *= slower;
+  options_.slow *= slower;
+}
 
 NewtonStatics::Refusal NewtonStatics::refusal(const Simulation& s) {
   if (const std::string term = term_without_tangent(s); !term.empty())

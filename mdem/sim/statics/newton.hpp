@@ -35,7 +35,7 @@ struct NewtonOptions {
   // Steps with a bond beyond its window, one after the other, after which it ends; 0: any number.
   int most_overloaded = 0;
   double farthest = 0.15;  // displacement of an element in a first try of a step, nm; turns count at the radius
-  double first_rate = 3;   // 1/ps: s = rate^2 at the start
+  double first_rate = 3;   // 1/ps: s = rate^2 at the start; of slower chains than those of carbon all rates are less
   double least_rate = 3e-3;
   double slow = 3e-3;  // 1/ps: motions that grow more slowly do not count
   // ps: a saddle from which the energy falls alike to both sides is left to the one to which the loads of this time
