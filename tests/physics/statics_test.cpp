@@ -482,7 +482,9 @@ TEST(Statics, TwistedRingIsUnstableAsMichellHasIt) {
     EXPECT_EQ(judge_stability(s, end).kind, StabilityVerdict::Kind::stable) << part;
     EXPECT_EQ(end.relaxed.saddles, part < 1 ? 0 : 1) << part;
     // It writhes, and keeps a quarter of the energy.
-    if (part > 1) EXPECT_LT(s.forces().energy.potential(), 0.3 * energy) << part;
+    if (part > 1) {
+      EXPECT_LT(s.forces().energy.potential(), 0.3 * energy) << part;
+    }
   }
 }
 
