@@ -32,7 +32,7 @@ Helix rod_at_rest(const ParameterSet& set) {
   return {std::sqrt(curvature2) / all2, 2 * units::pi * k.z / all2};
 }
 
-// Of four points in the middle of a helix: second differences point to its axis.
+// The helix through four points in the middle of a chain: second differences point to its axis.
 Helix helix_of(const State& s) {
   const std::size_t m = s.size() / 2;
   const auto inward = [&](std::size_t i) -> Vector3 { return s.position[i - 1] - 2 * s.position[i] + s.position[i + 1]; };
