@@ -73,7 +73,7 @@ class FixMotion : public LMP::Fix {
   void look_at_list(int& signal);
   // Lists are built in any case at such steps, and at those of states: a run that ends there goes on with the same bits.
   bool may_stop_now() const { return steps_to_stop(0) == 0; }
-  // Ends the run there if the time of -var wall is over before the next such step. All ranks.
+  // Ends the run at such a step if the time of -var wall is over before the next one. All ranks call this.
   void stop_in_time();
   bool exchanged_now() const;
   void hand_out();  // own elements, to LAMMPS's arrays

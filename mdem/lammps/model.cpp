@@ -28,7 +28,7 @@ LammpsModel load_lammps_model(const std::string& directory) {
   m.topology.groups.ends_meet = ends_meet(scene, m.topology);
   set_collapse(scene, m.topology);
   m.interaction = interaction_of(scene);
-  scene.memory.names.emplace_back("links");  // none is placed here: all are in the state
+  scene.memory.names.emplace_back("links");  // all links are in the state: the reader places none
   add_terms(scene, m.topology, State(static_cast<std::size_t>(m.topology.elements())), m.interaction);
   if (m.start.tubes_came_broken) add_term(broken_tubes_term(m.topology), m.interaction);
   m.loads = loads_of(scene, m.topology, m.interaction);

@@ -216,7 +216,7 @@ struct BondStiffness {
 };
 typedef struct BondStiffness BondStiffness;
 
-// What a bond of one length needs that has a natural shape or two stiffnesses of bending.
+// Numbers of a bond of one length that has a natural shape or two stiffnesses of bending.
 typedef struct {
   int used;                 // 0: the bond has neither
   double share;             // (s_1 EI_1 + s_2 EI_2)/(2 EI)
