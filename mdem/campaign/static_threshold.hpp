@@ -1,6 +1,6 @@
-// The value of a key of a scene at which its state of rest ceases to be stable, without running it: by bisection,
-// with the state of rest at the largest value that is known to be stable as the start of the next one. Friction has
-// no part in it.
+// The value of a key of a scene at which its state of rest ceases to be stable, or to be found, without running it: by
+// bisection, with the state of rest at the largest value that is known to be stable as the start of the next one.
+// Friction has no part in it.
 #pragma once
 
 #include <limits>
@@ -16,10 +16,10 @@ struct StaticThreshold {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
   std::string point;
-  double below = none, above = none;  // stable; unstable
+  double below = none, above = none;  // stable; unstable, or without a state of rest
   double growth = none;               // growth rate at `above`, 1/ns
   std::string motion;                 // that grows there
-  std::string why;                    // there is no bracket, or it was not narrowed as far as asked for
+  std::string why;                    // there is no bracket, it is wide, or `above` has no state of rest
   int states = 0;                     // that were solved for
   double theory = none;               // in the unit of the key: no helix grows below
 

@@ -156,6 +156,7 @@ namespace {
 // The drives of the rope's ends in the trial with this value of the key.
 EndDrives drives_at(const Sweep& sweep, const SweepPoint& point, double value) {
   Scene scene = scene_of_text(trial_text(sweep, point, value), sweep.scene_path);
+  scene.stops.clear();  // --static takes relaxations, which know no [[stop]]
   const Prepared p = prepare(scene);
   return end_drives(p.loads, p.topology);
 }
