@@ -20,15 +20,16 @@ if(NOT sanitize)
     -*Parameter.*/ring_energy_* *Parameter.*/stretch_and_cantilever_* *Parameter.*/crossing_torque_*)
   # What the atoms of a tube that slides lose: their strength is measured in LAMMPS in every landing.
   set(long_calibrate SlidingInLammps.DragIsFarBelowTheStrength)
-  # Processes of a campaign or a calibration that are broken off at many places.
-  set(long_cli FaultsOfProcesses.* -FaultsOfProcesses.ThresholdBrokenOff)
+  # Processes of a campaign or a calibration that are broken off at many places; the calibration of a second tube.
+  set(long_cli FaultsOfProcesses.* Calibrate.AThinTubesSet* -FaultsOfProcesses.ThresholdBrokenOff)
   set(rotating_cli Faults.RunKilledAtAnyCall Faults.RunKilledInAnyWrite Faults.RunToldToStopAtAnyCall
     Faults.ResumeKilledAtAnyCall Faults.RelaxationEndedAtAnyCall Faults.DiskFullFromAnyCallOfARun
     Faults.DiskFullFromAnyCallOfAResume Faults.AnyCallOfARunFailsOnce Faults.SignalsInAnyCallAreOfNoConsequence
     Faults.SweepKilledAndGoneOnWith Faults.OtherVerbsKilledOrOutOfDisk Faults.RefinedRunKilledAndGoneOnWith
     Surroundings.AHostileRunDirectoryReachesNothingOutside Surroundings.AHostileCampaignReachesNothingOutside)
-  # The film of this suite has all that terms remember on ranks in every landing.
-  set(long_lammps LammpsEvents.TubesBreak* LammpsEvents.LinksOf* LammpsEvents.LinksForm*)
+  # The film of LammpsEvents has all that terms remember on ranks in every landing.
+  set(long_lammps LammpsEvents.TubesBreak* LammpsEvents.LinksOf* LammpsEvents.LinksForm* LammpsRun.FrictionSlides*
+    LammpsRun.ARankSends* LammpsRun.TethersHold*)
   set(long_scripts python.wheel install.Package docs.Tutorial/phase-diagram docs.Tutorial/tube docs.Gallery
     readers.Snakemake)
 else()
