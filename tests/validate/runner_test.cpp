@@ -81,6 +81,23 @@ TEST(ValidationCase, IsNotApplicableToASetWithoutItsLaw) {
   EXPECT_THROW(check_applicable(warm, test::shipped("cnt-6-4-tersoff"), {thin}), NotApplicable);
 }
 
+// Atoms of one wall tell nothing about several, nor the other way round. Theory is of any tube.
+TEST(ValidationCase, OfAtomsIsOfOneWallOrOfSeveral) {
+  const ParameterSet one = test::shipped("cnt-10-10-tersoff"), two = test::shipped("cnt-5-5@10-10-tersoff");
+  for (const Case& c : all_cases()) {
+    std::vector<ParameterSet> shipped;
+    for (const std::string& name : c.sets) shipped.push_back(test::shipped(name));
+    const bool of_atoms = c.group == Case::Group::atoms || c.group == Case::Group::codes;
+    if (c.name == "walls") {
+      EXPECT_NO_THROW(check_applicable(c, two, shipped)) << c.name;
+      EXPECT_THROW(check_applicable(c, one, shipped), NotApplicable) << c.name;
+    } else if (of_atoms) {
+      EXPECT_THROW(check_applicable(c, two, shipped), NotApplicable) << c.name;
+    }
+  }
+  EXPECT_NO_THROW(check_applicable(find_case("greenhill"), two, {one}));
+}
+
 TEST(ValidationOutcome, NotApplicableIsNoMiss) {
   Outcome o = outcome_with({});
   o.not_applicable = "the set has no <law>";

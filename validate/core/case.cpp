@@ -142,8 +142,10 @@ void check_applicable(const Case& c, const ParameterSet& given, const std::vecto
     throw NotApplicable("a filament has no lattice: there are no atoms to compare it with");
   if (is_shaped(given.bond) && !c.shaped)
     throw NotApplicable("the case is of a filament that is straight at rest and bends alike in all directions");
-  if (!given.walls.empty() && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
+  const bool of_walls = !shipped.empty() && !shipped.front().walls.empty();
+  if (!given.walls.empty() && !of_walls && (c.group == Case::Group::atoms || c.group == Case::Group::codes))
     throw NotApplicable("the atoms of this case are those of a tube of one wall");
+  if (given.walls.empty() && of_walls) throw NotApplicable("the case is of tubes of several walls");
   if (c.law == Case::Law::line && !given.law<LineParameters>())
     throw NotApplicable("the set has no contact law `line`");
   if (c.law == Case::Law::paper && !given.law<PaperContact>())

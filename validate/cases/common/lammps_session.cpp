@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <numeric>
@@ -128,6 +129,23 @@ double row_height(Chirality c, const TubeShape& shape) {
 double natural_twist(const ParameterSet& set) {
   const Quantity* twist = find_quantity(set, "atomistic.natural_twist");
   return twist ? twist->value : 0;
+}
+
+std::vector<calibrate::WallShape> wall_shapes(const ParameterSet& set) {
+  std::vector<calibrate::WallShape> out;
+  for (const Wall& wall : set.walls) {
+    TubeShape shape;
+    shape.radius = wall.radius;
+    shape.length_per_hexagon = 2 / wall.atoms_per_length;
+    out.push_back({wall.chirality, shape});
+  }
+  return out;
+}
+
+std::string between_walls(const ParameterSet& set) {
+  const UniversalLine& law = set.law<LineParameters>()->universal;
+  return fmt::format("Lennard-Jones, {} eV, {} nm, cut at {} nm, shifted", law.epsilon, law.sigma,
+                     std::min(law.lj_cutoff, between_walls_cutoff));
 }
 
 }  // namespace ropewalk::validate

@@ -9,6 +9,7 @@
 
 #include "atomistic/finite_tube.hpp"
 #include "atomistic/runs.hpp"
+#include "atomistic/walled_tube.hpp"
 #include "contact/van_der_waals.hpp"
 #include "core/case.hpp"
 #include "core/reference.hpp"
@@ -71,5 +72,11 @@ double row_height(Chirality c, const TubeShape& shape);
 
 // Natural twist of the set's tube, rad/nm; 0 where the set has none.
 double natural_twist(const ParameterSet& set);
+
+// The walls of a set of several, inside first, as rolled sheets of the set's radii and lengths.
+std::vector<calibrate::WallShape> wall_shapes(const ParameterSet& set);
+// The law between atoms of two walls of one tube is cut here (nm) and shifted, as in the calibration.
+inline constexpr double between_walls_cutoff = 1.2;
+std::string between_walls(const ParameterSet& set);
 
 }  // namespace ropewalk::validate
