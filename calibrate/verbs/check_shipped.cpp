@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "atoms/honeycomb_file.hpp"
 #include "io/data_files.hpp"
@@ -28,16 +31,7 @@ double value_of(const ParameterSet& set, const std::string& key) {
 }
 
 Calibration remake(const ParameterSet& set) {
-  CalibrationRequest request;
-  request.chirality = set.chirality;
-  const std::string potential = provenance_value(set, "potential");
-  if (potential.empty())
-    throw InputError({set.path, 0, "provenance.potential"}, "is missing",
-                     "only a set made by `ropewalk calibrate` can be remade");
-  request.potential = potential_of(set, potential);
-  request.law = parse_atom_law(
-      fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
-      value_of(set, "contact.line.lj_cutoff"));
+  CalibrationRequest request = request_of(set);
   request.stiffness.lammps.interrupted = [] { return interrupted_by() != 0; };
   WorkFolder folder("");
   request.folder = folder.path();
@@ -49,18 +43,42 @@ Calibration remake(const ParameterSet& set) {
   }
 }
 
-// The numbers that are compared. K, s, c, p and q are not compared one by one, since they are strongly correlated.
-constexpr const char* compared[] = {"tube.radius",
-                                    "tube.atoms_per_length",
-                                    "bond.EA",
-                                    "bond.EI",
-                                    "bond.GJ",
-                                    "bond.kGA",
-                                    "contact.line.surface_density",
-                                    "contact.line.pair_spacing",
-                                    "contact.line.pair_energy",
-                                    "contact.line.cross90_energy",
-                                    "contact.line.registry"};
+}  // namespace
+
+CalibrationRequest request_of(const ParameterSet& set) {
+  CalibrationRequest request;
+  request.chirality = set.chirality;
+  for (const Wall& wall : set.walls) request.walls.push_back(wall.chirality);
+  request.outer_carries = set.outer_carries;
+  if (!set.walls.empty())
+    std::tie(request.stiffness.short_length, request.stiffness.long_length) = specimen_lengths(request.walls);
+  const std::string potential = provenance_value(set, "potential");
+  if (potential.empty())
+    throw InputError({set.path, 0, "provenance.potential"}, "is missing",
+                     "only a set made by `ropewalk calibrate` can be remade");
+  request.potential = potential_of(set, potential);
+  request.law = parse_atom_law(
+      fmt::format("{},{}", value_of(set, "contact.line.epsilon"), value_of(set, "contact.line.sigma")),
+      value_of(set, "contact.line.lj_cutoff"));
+  return request;
+}
+
+// K, s, c, p and q are not among them, since they are strongly correlated.
+std::vector<std::string> compared_numbers(const ParameterSet& set) {
+  std::vector<std::string> keys = {set.walls.empty() ? "tube.radius" : "tube.contact_radius", "tube.atoms_per_length"};
+  for (std::size_t k = 1; k <= set.walls.size(); ++k)
+    for (const char* number : {"radius", "atoms_per_length", "EA", "EI", "GJ"})
+      keys.push_back(fmt::format("wall.{}.{}", k, number));
+  for (const char* number : {"EA", "EI", "GJ", "kGA"}) keys.push_back(fmt::format("bond.{}", number));
+  for (const char* way : {"all", "outer"})
+    for (const char* number : {"EA", "EI", "GJ"})
+      if (!set.walls.empty()) keys.push_back(fmt::format("held.{}.{}", way, number));
+  for (const char* number : {"surface_density", "pair_spacing", "pair_energy", "cross90_energy", "registry"})
+    keys.push_back(fmt::format("contact.line.{}", number));
+  return keys;
+}
+
+namespace {
 
 bool check_one(const std::string& name, double tolerance) {
   const ParameterSet shipped = read_parameters(find_parameters(name, "", {"", 0, "set"}));
@@ -68,7 +86,7 @@ bool check_one(const std::string& name, double tolerance) {
   const ParameterSet remade = parameter_set(c, "", "");
   fmt::print("{}, made anew in {:.1f} s\n", shipped.name, c.seconds);
   bool same = true;
-  for (const char* key : compared) {
+  for (const std::string& key : compared_numbers(shipped)) {
     const double a = value_of(shipped, key), b = value_of(remade, key);
     const double difference = (b - a) / std::fabs(a);
     const bool near = std::fabs(difference) <= tolerance;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/command_line.hpp"
 #include "io/removal.hpp"
@@ -29,7 +30,7 @@ struct CalibrateArguments {
   bool quiet = false;
   StiffnessOptions stiffness;
   std::string envelope_of;            // a set whose envelope is taken
-  std::string bend_lengths;           // nm; empty: 6,10 of one wall, 3,6 of several
+  std::string bend_lengths;           // nm; empty: 6,10 of one wall, specimen_lengths() of several
   std::string command;                // as typed
 };
 int calibrate_command(const CalibrateArguments& arguments);
@@ -96,6 +97,11 @@ struct Section {
   double thick_wall_I;  // nm^4
 };
 Section effective_section(const ParameterSet& set);
+
+// What made a shipped set, and the numbers that `check-shipped` compares with those of the set made anew. Throws
+// InputError for a set that `ropewalk calibrate` did not make.
+CalibrationRequest request_of(const ParameterSet& set);
+std::vector<std::string> compared_numbers(const ParameterSet& set);
 
 void print_set(const ParameterSet& set);
 std::string calibration_page(const ParameterSet& set);

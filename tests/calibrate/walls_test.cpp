@@ -4,13 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "atomistic/walled_tube.hpp"
 #include "atoms/lattice.hpp"
 #include "contact/fit_contact.hpp"
 #include "contact/integral.hpp"
+#include "io/data_files.hpp"
+#include "io/parameters_toml.hpp"
 #include "model/error.hpp"
+#include "verbs/verbs.hpp"
 
 namespace ropewalk::calibrate {
 namespace {
@@ -147,6 +151,26 @@ TEST(WalledContact, IsDeeperByTheWallsBehind) {
   EXPECT_NEAR(both.energy, -1.1620, 2e-3);
   EXPECT_NEAR(both.distance, 1.68901, 3e-4);
   EXPECT_NEAR(both.energy / one.energy, 1.15, 0.005);
+}
+
+// `check-shipped` asks for what the command that made the set asks for, and finds all that it compares in the set.
+TEST(WalledSet, CanBeMadeAnew) {
+  for (const char* name : {"cnt-5-5@10-10-tersoff", "cnt-10-10@15-15-tersoff", "cnt-5-5@10-10@15-15-tersoff"}) {
+    const ParameterSet set = read_parameters(find_parameters(name, ""));
+    const CalibrationRequest request = request_of(set);
+    EXPECT_EQ(request.name(), name);
+    EXPECT_FALSE(request.outer_carries) << name;
+    EXPECT_EQ(request.law.cutoff, 3) << name;
+    const double shorter = 3 * 2 * tube_radius(set.chirality);
+    EXPECT_NEAR(request.stiffness.short_length, std::min(shorter, 6.0), 1e-9) << name;
+    EXPECT_NEAR(request.stiffness.long_length, 2 * std::min(shorter, 6.0), 1e-9) << name;
+    const std::vector<std::string> numbers = compared_numbers(set);
+    EXPECT_THAT(numbers, testing::IsSupersetOf({"wall.1.EA", "wall.2.EI", "held.outer.GJ", "tube.contact_radius"}));
+    for (const std::string& key : numbers) EXPECT_TRUE(find_quantity(set, key)) << name << ": " << key;
+  }
+  const ParameterSet one = read_parameters(find_parameters("cnt-5-5-tersoff", ""));
+  EXPECT_TRUE(request_of(one).walls.empty());
+  for (const std::string& key : compared_numbers(one)) EXPECT_TRUE(find_quantity(one, key)) << key;
 }
 
 TEST(WalledPotential, NamesEachWallAndTheLawBetweenThem) {
