@@ -30,7 +30,7 @@ class Bisection {
   }
 
  private:
-  // Lost: the state is unstable, or there is none.
+  // A load is lost where its state of rest is unstable, or where no state of rest was found.
   enum class Outcome { stable, lost, unclear };
 
   void bracket() {

@@ -28,7 +28,7 @@ std::string specimen_commands(const std::vector<SpecimenState>& states, double f
 // Planes of bending (rad) whose mean has no more of the azimuths of both ends: one for a tube that has a threefold axis.
 std::vector<double> bending_planes(Chirality c);
 
-// What one way of holding makes of the states: energies per length above rest (eV/nm).
+// The states of one way of holding, and their energies per length above rest (eV/nm).
 struct SpecimenEnergies {
   std::vector<SpecimenState> states;
   std::vector<double> energy;
