@@ -9,6 +9,6 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for tubes in 37 91 169; do
   sed "s/^tubes = .*/tubes = $tubes/" rope.toml >"$work/$tubes.toml"
-  "$ropewalk" run "$work/$tubes.toml" --out "$work/$tubes" --quiet || [ $? = 4 ] # a curve that ends before its schedule
+  "$ropewalk" run "$work/$tubes.toml" --out "$work/$tubes" --quiet
   cp "$work/$tubes/equilibria.csv" "curve-$tubes.csv"
 done
